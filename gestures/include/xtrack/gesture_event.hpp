@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <xtrack/geometry.hpp>
+#include <xtrack/hand.hpp>
+#include <xtrack/stamp.hpp>
+
+namespace xtrack {
+
+/// What an event is about. `hand` reports hands coming and going; the rest are gestures.
+enum class GestureType : std::uint8_t { hand, swipe, push, pinch };
+inline constexpr std::size_t kGestureTypeCount = 4;
+
+/// As the user sees it.
+enum class Direction : std::uint8_t { none, left, right, up, down };
+
+/// One-shot gestures give begin and end in the deciding frame; those with a life give begin,
+/// update*, then end or cancel. What a gesture is never changes during its life.
+enum class EventPhase : std::uint8_t { begin, update, end, cancel };
+
+enum class CancelReason : std::uint8_t {
+    none,
+    lost,        ///< the hand was not seen for 120 ms
+    edge,        ///< the hand reached the image's border
+    superseded,  ///< a stronger gesture of the same hand took over
+    timeout,
+    disengaged,
+};
+
+/// @since 0.1
+struct GestureEvent {
+    GestureType type = GestureType::hand;
+    Direction direction = Direction::none;
+    EventPhase phase = EventPhase::begin;
+    CancelReason cancel_reason = CancelReason::none;
+    int gesture_id = 0;  ///< the same from begin to end; never used again
+    int hand_id = 0;
+    Chirality hand = Chirality::unknown;
+    float hand_confidence = 0.0F;
+    Stamp onset;                        ///< when the motion began
+    Stamp sensor;                       ///< the newest frame of the decision
+    Stamp emit;                         ///< when the callback ran; in replay the same as `sensor`
+    Vec3f position_mm = Vec3f::Zero();  ///< palm; pinch: between the fingertips. Interaction frame.
+    Vec3f velocity_mmps = Vec3f::Zero();
+    float progress = 0.0F;    ///< 0..1 of what the gesture needs
+    float value = 0.0F;       ///< swipe, push: mean speed mm/s; pinch: pinch value 0..1
+    float confidence = 0.0F;  ///< 0..1
+};
+
+[[nodiscard]] const char* to_string(GestureType t) noexcept;
+[[nodiscard]] const char* to_string(Direction d) noexcept;
+[[nodiscard]] const char* to_string(EventPhase p) noexcept;
+[[nodiscard]] const char* to_string(CancelReason r) noexcept;
+
+/// The event's name as labels write it: `swipe_left`, `push`.
+[[nodiscard]] std::string name_of(const GestureEvent& event);
+
+/// One JSON object without a line break, the format that `--events jsonl` prints.
+[[nodiscard]] std::string to_json(const GestureEvent& event);
+
+}  // namespace xtrack
