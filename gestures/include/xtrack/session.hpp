@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string_view>
+
+#include <xtrack/depth_decoder.hpp>
+#include <xtrack/gesture_event.hpp>
+#include <xtrack/gesture_settings.hpp>
+#include <xtrack/hand.hpp>
+#include <xtrack/hand_source.hpp>
+#include <xtrack/hand_tracker.hpp>
+#include <xtrack/result.hpp>
+#include <xtrack/source.hpp>
+
+namespace xtrack {
+
+/// How a session treats the stamps of its source.
+enum class Pace {
+    /// As fast as it can, nothing dropped, `emit` = `sensor`: the same input gives the same bits.
+    replay,
+    /// A recording or the simulator as if it were live: each item waits until it is due.
+    own_pace,
+    /// A device, whose stamps are CLOCK_MONOTONIC.
+    live,
+};
+
+struct SessionOptions {
+    Pace pace = Pace::replay;
+    DecodeSettings decode;
+    TrackerSettings tracker;
+    GestureSettings gestures;
+};
+
+/// What one step did.
+enum class StepStatus {
+    processed,  ///< one item went through the whole pipeline
+    waiting,    ///< nothing was due within the time-out
+    end,        ///< the stream is over; what was open has ended
+    stopped,    ///< stop() was called
+};
+
+/// Everything that one item became on its way, for viewers and recorders. Pointers are null where a
+/// source enters the pipeline later (a depth camera has no `frame`) or a stage gave nothing.
+/// @ownership borrowed for the length of the call; copy `frame`'s FramePtr to keep it
+struct PipelineView {
+    const FramePtr* frame = nullptr;
+    const DepthDecoder* decoder = nullptr;  ///< set when `depth` came from fringes
+    const DepthFrame* depth = nullptr;
+    const HandTracker* tracker = nullptr;          ///< set when `camera_hands` came from depth
+    const HandFrame* camera_hands = nullptr;       ///< camera frame
+    const HandFrame* interaction_hands = nullptr;  ///< interaction frame
+};
+
+/// A length of time measured often.
+struct TimeStatistics {
+    std::uint64_t count = 0;
+    double median_us = 0.0;
+    double p99_us = 0.0;
+    double max_us = 0.0;
+};
+
+/// Counts and wall-clock times since the session was made.
+struct SessionStatistics {
+    std::uint64_t items = 0;     ///< frames, depth images or hand frames processed
+    std::uint64_t dropped = 0;   ///< arrived faster than they could be processed (never in replay)
+    std::uint64_t rejected = 0;  ///< refused by the decoder: damaged, unknown pattern, late
+    std::uint64_t depth_frames = 0;
+    std::uint64_t events = 0;
+    std::uint64_t events_dropped = 0;  ///< lost by a reader that polled too slowly
+    TimeStatistics decode;             ///< frame to depth
+    TimeStatistics track;              ///< depth to hands
+    TimeStatistics recognise;          ///< hands to events, callbacks included
+    TimeStatistics whole;
+    TimeStatistics latency;  ///< event: sensor to emit; empty in replay
+};
+
+/// From a source to gesture events. Three ways to run it:
+///  - run(): in the calling thread until the end;
+///  - start() and wait(): in a thread of its own;
+///  - step(): one item a call, for programs that own their loop.
+/// It opens no window and needs no main thread.
+///
+/// Callbacks run in the thread that calls run() or step(), or in the session's own thread after
+/// start(), one at a time. They may subscribe, unsubscribe, poll and stop(); they must not destroy
+/// the session. A callback that throws ends the session with an Error.
+/// @since 0.1
+class Session {
+ public:
+    using EventCallback = std::function<void(const GestureEvent&)>;
+    using HandsCallback = std::function<void(const HandFrame& interaction)>;
+    using PipelineCallback = std::function<void(const PipelineView&)>;
+
+    /// Opens a source by name: `sim`, `sim:PRESET`, or the folder of a recording.
+    /// @return an Error that names the source and the mend
+    static Result<Session> open(std::string_view source, const SessionOptions& options = {});
+
+    /// Takes over a source that the caller made. @ownership the session owns the source
+    static Result<Session> create(std::unique_ptr<FrameSource> source,
+                                  const SessionOptions& options);
+    static Result<Session> create(std::unique_ptr<DepthSource> source,
+                                  const SessionOptions& options);
+    static Result<Session> create(std::unique_ptr<HandSource> source,
+                                  const SessionOptions& options);
+
+    Session(Session&&) noexcept;
+    Session& operator=(Session&&) noexcept;
+    /// Stops and joins. @thread not from a callback
+    ~Session();
+
+    /// Calls back for every event of one type. @return a handle for unsubscribe(). @thread any
+    int subscribe(GestureType type, EventCallback callback);
+    /// Calls back for every event. @thread any
+    int subscribe(EventCallback callback);
+    /// Calls back with the hands of every frame, interaction frame. @thread any
+    int subscribe_hands(HandsCallback callback);
+    /// Calls back after every processed item with all that it became. @thread any
+    int subscribe_pipeline(PipelineCallback callback);
+    /// @thread any, a callback included
+    void unsubscribe(int handle);
+
+    /// The other way to events: a queue of the newest 256. False when there is none. @thread any
+    bool poll(GestureEvent& event);
+
+    /// Runs until the stream ends, fails, or stop() is called. @thread any, one at a time
+    Result<void> run();
+    /// Runs in a thread of the session's own. @return an Error if it runs already
+    Result<void> start();
+    /// Waits for the thread of start(). @return how it ended
+    Result<void> wait();
+    /// Processes at most one item in the calling thread; waits for it up to `timeout` (0: not at
+    /// all). Call it at 50 Hz or more: losses are noticed by the clock. @thread one at a time
+    Result<StepStatus> step(Duration timeout = Duration::zero());
+    /// Ends run(), step() or the thread of start() soon; what was open is cancelled. Cannot fail;
+    /// again is harmless. @thread any, a callback included
+    void stop() noexcept;
+
+    [[nodiscard]] SessionStatistics statistics() const;
+
+ private:
+    struct Impl;
+    explicit Session(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace xtrack
