@@ -2,13 +2,16 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
+#include <xtrack/frame.hpp>
 #include <xtrack/geometry.hpp>
 #include <xtrack/image.hpp>
 #include <xtrack/result.hpp>
+#include <xtrack/rig.hpp>
 
 namespace xtrack {
 
@@ -53,5 +56,78 @@ struct PatternSequence {
     }
     friend bool operator==(const PatternSequence&, const PatternSequence&) = default;
 };
+
+/// Bounds of what validate() accepts.
+inline constexpr std::size_t kMaxPatterns = 1024;
+inline constexpr int kMaxImageSide_px = 16384;  ///< of cameras and projectors alike
+inline constexpr int kMaxGrayBits = 16;
+
+/// Checks every field that the kinds in use name: sizes 1..kMaxImageSide_px, periods of at least
+/// two pixels (fewer cannot be shown), bits 1..kMaxGrayBits, levels 0..1, nothing NaN or infinite,
+/// 1..kMaxPatterns patterns.
+/// @return an Error that names the field (`sequence[3].period_px`) and the mend
+/// @thread any
+/// @since 0.1
+[[nodiscard]] Result<void> validate(const PatternSequence& sequence);
+
+/// Light of a pattern at projector pixel `x_px` of the coded axis, 0..1, before gamma. Gray codes
+/// take the integer pixel nearest to `x_px`; cells before the first count as the first.
+/// @param channel 0 red, 1 green, 2 blue; only rgb_sine tells them apart
+/// @pre a pattern that validate() accepts, channel 0..2
+/// @thread any; pure
+/// @since 0.1
+[[nodiscard]] double intensity(const Pattern& pattern, double x_px, int channel = 0) noexcept;
+
+/// What to do about the projector's response when a pattern becomes pixel values.
+enum class GammaCompensation {
+    none,           ///< value = light: what a projector set to linear wants, and the plain sequence
+    precompensate,  ///< value = light^(1 / gamma): the wall then shows the sequence as written
+};
+
+/// Draws one pattern as the projector shall be handed it: grey8, or bgr8 for rgb_sine (in bytes:
+/// blue, green, red). Sizes `out` to the projector; rounds to the nearest of 256 values.
+/// @param index into sequence.patterns
+/// @param out keeps its memory from call to call
+/// @return the format, or an Error: the sequence is not valid, the index is out of range, or
+///         compensation is asked for while `sequence.gamma` is unknown
+/// @thread any; allocates only when `out` must grow, and one row's buffer
+/// @since 0.1
+[[nodiscard]] Result<PixelFormat> render_pattern(const PatternSequence& sequence, int index,
+                                                 Image<std::uint8_t>& out,
+                                                 GammaCompensation gamma = GammaCompensation::none);
+
+// Common sequences. Phases step by -2 pi / steps: 0, -2 pi / N, -4 pi / N ... None is validated
+// here; hand the result to validate() when its arguments come from outside.
+
+/// `steps` sines of one period.
+/// @since 0.1
+[[nodiscard]] PatternSequence n_step_sequence(Axis axis, Size projector_size, double period_px,
+                                              int steps);
+
+/// Three sines of one period: the least that gives phase (Zhang, Huang 2006).
+/// @since 0.1
+[[nodiscard]] PatternSequence three_step_sequence(Axis axis, Size projector_size, double period_px);
+
+/// Three steps of a coarse period, then three of a fine one (2x3): the coarse one orders the fine.
+/// @since 0.1
+[[nodiscard]] PatternSequence dual_sequence(Axis axis, Size projector_size, double coarse_period_px,
+                                            double fine_period_px);
+
+/// White, black, a Gray code whose cells are one period wide, then three sines of that period.
+/// @since 0.1
+[[nodiscard]] PatternSequence gray_code_sequence(Axis axis, Size projector_size, double period_px);
+
+/// One coloured pattern for each period, its three phases in red, green and blue.
+/// @since 0.1
+[[nodiscard]] PatternSequence rgb_sequence(Axis axis, Size projector_size,
+                                           const std::vector<double>& periods_px);
+
+/// The least period, px, that is unique within the rig's working volume for every camera pixel: the
+/// geometric constraint of An, Hyun and Zhang 2016. Lens distortion is left out of it; the 2 %
+/// that are added cover that.
+/// @return an Error if the rig has no projector or no working volume, if the volume reaches
+///         behind the projector, or if the axis lies across the baseline
+/// @since 0.1
+[[nodiscard]] Result<double> volume_wide_period_px(const Rig& rig, Axis axis);
 
 }  // namespace xtrack

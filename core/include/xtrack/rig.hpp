@@ -47,4 +47,11 @@ struct Rig {
     std::optional<Mat3d> camera_from_projector_rgb;
 };
 
+/// Checks what a computation relies on: sizes, finite numbers, focal lengths over 0, matrices that
+/// can be inverted, a rotation that is one, a baseline that is not zero, near before far.
+/// @return an Error that names the field as rig.yaml spells it, and the mend
+/// @thread any
+/// @since 0.1
+[[nodiscard]] Result<void> validate(const Rig& rig);
+
 }  // namespace xtrack
