@@ -6,6 +6,42 @@ set(XTRACK_STAGES
     gestures/segment gestures/track gestures/recognise gestures/session gestures/hid
     gestures/pipeline)
 
+# Which stage a public header <xtrack/NAME.hpp> belongs to. Nouns that several stages share belong
+# to core/base. A public header that is missing here fails the build.
+set(XTRACK_HEADERS_core/base depth frame geometry image pattern phase_map point_cloud result rig
+                             source stamp)
+set(XTRACK_HEADERS_core/pattern pattern_timeline)
+set(XTRACK_HEADERS_core/pipeline depth_decoder)
+set(XTRACK_HEADERS_gestures/segment hand_region)
+set(XTRACK_HEADERS_gestures/track hand hand_source hand_tracker tracker_settings)
+set(XTRACK_HEADERS_gestures/recognise gesture_event gesture_settings)
+set(XTRACK_HEADERS_gestures/session session)
+
+# The only folders that may include headers of an operating system.
+set(XTRACK_DEVICE_FOLDERS core/capture/v4l2 core/project gestures/hid)
+
+# Stages that an option switches off.
+set(XTRACK_OPTION_core/project XTRACK_WITH_PROJECTOR)
+set(XTRACK_OPTION_core/calibrate XTRACK_WITH_CALIBRATION)
+set(XTRACK_OPTION_gestures/hid XTRACK_WITH_HID)
+
+# Runs check_stages.cmake before anything is compiled, and again only if a source changed.
+function(xtrack_check_stages)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/core/*.?pp
+       ${PROJECT_SOURCE_DIR}/gestures/*.?pp ${PROJECT_SOURCE_DIR}/core/*.h
+       ${PROJECT_SOURCE_DIR}/gestures/*.h)
+  set(script ${PROJECT_SOURCE_DIR}/cmake/check_stages.cmake)
+  set(stamp ${PROJECT_BINARY_DIR}/stages.stamp)
+  add_custom_command(
+    OUTPUT ${stamp}
+    COMMAND ${CMAKE_COMMAND} -DROOT=${PROJECT_SOURCE_DIR} -P ${script}
+    COMMAND ${CMAKE_COMMAND} -E touch ${stamp}
+    DEPENDS ${sources} ${script} ${PROJECT_SOURCE_DIR}/cmake/Stages.cmake
+    COMMENT "Checking that no stage includes a later one"
+    VERBATIM)
+  add_custom_target(xtrack_check_stages DEPENDS ${stamp})
+endfunction()
+
 # xtrack_stage(<folder> SOURCES ... [LINK ...])
 #
 # An object library for one stage, named after its folder (core/decode -> xtrack_core_decode), and
@@ -26,6 +62,43 @@ function(xtrack_stage folder)
   endif()
   target_link_libraries(${name} PUBLIC Eigen3::Eigen Threads::Threads ${ARG_LINK})
   xtrack_settings(${name})
+  add_dependencies(${name} xtrack_check_stages)
   set_property(GLOBAL APPEND PROPERTY XTRACK_${part}_OBJECTS $<TARGET_OBJECTS:${name}>)
   set_property(GLOBAL APPEND PROPERTY XTRACK_${part}_LINK ${ARG_LINK})
+endfunction()
+
+# xtrack_part(<part> [LINK ...])
+#
+# Adds the stages of a part, in order, and the library xtrack_<part> (alias xtrack::<part>) made of
+# them. LINK names the parts it stands on.
+function(xtrack_part part)
+  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  foreach(stage ${XTRACK_STAGES})
+    set(switch "${XTRACK_OPTION_${stage}}")
+    if(stage MATCHES "^${part}/" AND EXISTS ${PROJECT_SOURCE_DIR}/${stage}/CMakeLists.txt
+       AND ("${switch}" STREQUAL "" OR "${${switch}}"))
+      add_subdirectory(${PROJECT_SOURCE_DIR}/${stage})
+    endif()
+  endforeach()
+
+  get_property(objects GLOBAL PROPERTY XTRACK_${part}_OBJECTS)
+  get_property(link GLOBAL PROPERTY XTRACK_${part}_LINK)
+  list(REMOVE_DUPLICATES link)
+  add_library(xtrack_${part} ${objects})
+  add_library(xtrack::${part} ALIAS xtrack_${part})
+  # Before 1.0 a minor version may change the ABI, so the SONAME carries it.
+  set_target_properties(
+    xtrack_${part}
+    PROPERTIES LINKER_LANGUAGE CXX
+               EXPORT_NAME ${part}
+               VERSION ${PROJECT_VERSION}
+               SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+               WINDOWS_EXPORT_ALL_SYMBOLS ON
+               XTRACK_OUTSIDE_LIBRARIES "${link}")
+  target_include_directories(
+    xtrack_${part} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/${part}/include>
+                          $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(xtrack_${part} PUBLIC Eigen3::Eigen Threads::Threads ${ARG_LINK}
+                                       PRIVATE ${link})
+  target_compile_features(xtrack_${part} PUBLIC cxx_std_20)
 endfunction()
