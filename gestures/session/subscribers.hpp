@@ -19,12 +19,13 @@ class Subscribers {
  public:
     using Callback = std::function<void(Args...)>;
 
-    int add(Callback callback) {
+    /// @return `id`, which the caller keeps unique
+    int add(int id, Callback callback) {
         const MutexLock lock(mutex_);
         auto next = std::make_shared<List>(*list_);
-        next->emplace_back(++last_id_, std::move(callback));
+        next->emplace_back(id, std::move(callback));
         list_ = std::move(next);
-        return last_id_;
+        return id;
     }
 
     void remove(int id) {
@@ -57,7 +58,6 @@ class Subscribers {
 
     mutable Mutex mutex_;
     std::shared_ptr<const List> list_ XTRACK_GUARDED_BY(mutex_) = std::make_shared<List>();
-    int last_id_ XTRACK_GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace xtrack

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <xtrack/session.hpp>
+#include <xtrack/sim.hpp>
+#ifdef XTRACK_HAS_RECORDINGS
+#include <xtrack/joint_recording.hpp>
+#include <xtrack/recording.hpp>
+#endif
+
+namespace xtrack {
+
+namespace {
+
+constexpr std::string_view kSimulator = "sim";
+constexpr std::string_view kSimulatorPreset = "sim:";
+constexpr std::string_view kDefaultPreset = "ideal-60";
+
+Result<Session> open_simulator(std::string_view preset, const SessionOptions& options) {
+    auto settings = SimSettings::preset(preset);
+    if (!settings) {
+        return settings.error();
+    }
+    auto rig = SimulatedRig::create(*settings);
+    if (!rig) {
+        return rig.error();
+    }
+    return Session::create(std::unique_ptr<FrameSource>(std::move(*rig)), options);
+}
+
+#ifdef XTRACK_HAS_RECORDINGS
+
+/// Gestures are measured in millimetres, so the images need their rig.
+Error rig_missing(const std::filesystem::path& folder) {
+    return {ErrorCode::unsupported,
+            (folder / "rig.yaml").string() +
+                ": missing; gestures need metric depth: add the calibration of the rig, or use "
+                "`decode` for phase alone"};
+}
+
+Result<Session> open_recording(const std::filesystem::path& folder, const SessionOptions& options) {
+    auto recording = RecordingReader::open(folder);
+    if (!recording) {
+        return recording.error();
+    }
+    switch (recording->kind()) {
+        case RecordingKind::joints: {
+            auto source = joint_source(folder);
+            return source ? Session::create(std::move(*source), options)
+                          : Result<Session>(source.error());
+        }
+        case RecordingKind::fringe: {
+            if (!recording->has_rig()) {
+                return rig_missing(folder);
+            }
+            auto source = frame_source(*recording);
+            return source ? Session::create(std::move(*source), options)
+                          : Result<Session>(source.error());
+        }
+        case RecordingKind::depth: break;
+    }
+    if (!recording->has_rig()) {
+        return rig_missing(folder);
+    }
+    auto source = depth_source(*recording);
+    return source ? Session::create(std::move(*source), options) : Result<Session>(source.error());
+}
+
+#else
+
+Result<Session> open_recording(const std::filesystem::path& folder, const SessionOptions&) {
+    return Error{ErrorCode::unsupported,
+                 folder.string() +
+                     ": this build reads no recordings (it was made without OpenCV); "
+                     "use `sim` or a source of your own"};
+}
+
+#endif
+
+}  // namespace
+
+Result<Session> Session::open(std::string_view source, const SessionOptions& options) {
+    if (source == kSimulator) {
+        return open_simulator(kDefaultPreset, options);
+    }
+    if (source.starts_with(kSimulatorPreset)) {
+        return open_simulator(source.substr(kSimulatorPreset.size()), options);
+    }
+    return open_recording(std::filesystem::path(source), options);
+}
+
+}  // namespace xtrack

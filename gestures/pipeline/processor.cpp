@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gestures/pipeline/processor.hpp"
+
+#include <chrono>
+#include <string>
+#include <utility>
+
+namespace xtrack {
+
+namespace {
+
+using Wall = std::chrono::steady_clock;
+
+/// A camera that faces the user, its origin the interaction frame's: what a rig means that does not
+/// say where the user is.
+Mat4d facing_the_user() {
+    Mat4d m = Mat4d::Identity();
+    m(0, 0) = -1.0;
+    m(1, 1) = -1.0;
+    return m;
+}
+
+}  // namespace
+
+Result<Processor> Processor::for_frames(const Rig& rig, const PatternSequence& patterns,
+                                        const SessionOptions& options) {
+    auto decoder = DepthDecoder::create(rig, patterns, rig.camera.size, options.decode);
+    if (!decoder) {
+        return decoder.error();
+    }
+    auto processor = for_depth(rig, options);
+    if (processor) {
+        processor->decoder_ = std::move(*decoder);
+    }
+    return processor;
+}
+
+Result<Processor> Processor::for_depth(const Rig& rig, const SessionOptions& options) {
+    auto recogniser = GestureRecogniser::create(options.gestures);
+    if (!recogniser) {
+        return recogniser.error();
+    }
+    // Made once here with the rig's own size so that a wrong setting is said before the first
+    // image.
+    auto tracker = HandTracker::create(rig, rig.camera.size, options.tracker);
+    if (!tracker) {
+        return tracker.error();
+    }
+    Processor processor(std::move(*recogniser),
+                        rig.interaction_from_camera.value_or(facing_the_user()));
+    processor.tracker_ = std::move(*tracker);
+    processor.tracker_size_ = rig.camera.size;
+    processor.rig_ = rig;
+    processor.tracker_settings_ = options.tracker;
+    return processor;
+}
+
+Result<Processor> Processor::for_hands(const SessionOptions& options) {
+    auto recogniser = GestureRecogniser::create(options.gestures);
+    if (!recogniser) {
+        return recogniser.error();
+    }
+    return Processor(std::move(*recogniser), Mat4d::Identity());
+}
+
+bool Processor::decode(const FramePtr& frame, PipelineView& view) {
+    const auto begin = Wall::now();
+    const DecodeStatus status = decoder_->push(frame);
+    decode_time_.add(Wall::now() - begin);
+    if (status.state == DecodeState::rejected) {
+        ++rejected_;
+    }
+    if (status.state != DecodeState::depth_ready) {
+        return false;
+    }
+    view.decoder = &*decoder_;
+    view.depth = &decoder_->depth();
+    return true;
+}
+
+Result<void> Processor::track(const DepthFrame& depth, PipelineView& view) {
+    ++depth_frames_;
+    if (depth.depth.size() != tracker_size_) {
+        if (depth_frames_ > 1) {
+            ++rejected_;
+            return {};
+        }
+        auto tracker = HandTracker::create(rig_, depth.depth.size(), tracker_settings_);
+        if (!tracker) {
+            return tracker.error();
+        }
+        tracker_ = std::move(*tracker);
+        tracker_size_ = depth.depth.size();
+    }
+    const auto begin = Wall::now();
+    view.camera_hands = &tracker_->track(depth);
+    interaction_hands_ = to_interaction(*view.camera_hands, interaction_from_camera_);
+    track_time_.add(Wall::now() - begin);
+    view.tracker = &*tracker_;
+    view.interaction_hands = &interaction_hands_;
+    return {};
+}
+
+Result<Processor::Outcome> Processor::process(const InputItem& item) {
+    if (newest_ && item.stamp < *newest_) {
+        return Error{ErrorCode::malformed,
+                     "time runs backwards: " + std::to_string(item.stamp.us()) + " us after " +
+                         std::to_string(newest_->us()) +
+                         " us; the source must give stamps in order"};
+    }
+    newest_ = item.stamp;
+
+    Outcome outcome;
+    PipelineView& view = outcome.view;
+    if (item.frame) {
+        view.frame = &item.frame;
+        (void)decode(item.frame, view);
+    } else if (tracker_) {
+        view.depth = &item.depth;
+    } else {
+        interaction_hands_ = item.hands;
+        hand_from_joints_.complete(interaction_hands_);
+        view.interaction_hands = &interaction_hands_;
+    }
+    if (view.depth != nullptr) {
+        if (auto tracked = track(*view.depth, view); !tracked) {
+            return tracked.error();
+        }
+    }
+
+    const auto begin = Wall::now();
+    if (view.interaction_hands != nullptr) {
+        lag_ = item.stamp - interaction_hands_.stamp;
+        outcome.events = recogniser_.push(interaction_hands_);
+    } else {
+        outcome.events = advance(item.stamp);
+    }
+    recognise_time_.add(Wall::now() - begin);
+    return outcome;
+}
+
+std::span<const GestureEvent> Processor::advance(Stamp now) {
+    if (!lag_) {
+        return {};
+    }
+    return recogniser_.advance(now - *lag_);
+}
+
+}  // namespace xtrack

@@ -1,0 +1,418 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <xtrack/session.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "core/base/mutex.hpp"
+#include "core/base/time_histogram.hpp"
+#include "gestures/pipeline/input.hpp"
+#include "gestures/pipeline/input_queue.hpp"
+#include "gestures/pipeline/processor.hpp"
+#include "gestures/pipeline/stream_clock.hpp"
+#include "gestures/session/event_queue.hpp"
+#include "gestures/session/subscribers.hpp"
+
+namespace xtrack {
+
+namespace {
+
+using Wall = StreamClock::Wall;
+
+// Lost hands are noticed by the clock, at 50 Hz when no item comes.
+constexpr Duration kTick = std::chrono::milliseconds(20);
+
+TimeStatistics statistics_of(const TimeHistogram& h) {
+    return {h.count(), h.quantile_us(0.5), h.quantile_us(0.99), h.max_us()};
+}
+
+}  // namespace
+
+struct Session::Impl {
+    Impl(Input in, Processor proc, Pace pace_in)
+        : input(std::move(in)), processor(std::move(proc)), pace(pace_in), clock(pace_in) {}
+
+    /// The next item if one is due within `timeout`, read in the calling thread.
+    bool read_due(Duration timeout);
+    /// The item through the pipeline, its events to the subscribers.
+    Result<StepStatus> take();
+    Result<StepStatus> step(Duration timeout);
+    /// Reads in a thread of its own and processes in this one, until the end.
+    Result<void> run_live();
+    Result<void> run();
+    void read_live();
+    void tick();
+    void deliver(std::span<const GestureEvent> events);
+    Result<StepStatus> finish(StepStatus how);
+
+    Input input;
+    Processor processor;
+    Pace pace;
+    StreamClock clock;
+    InputItem item;
+    bool item_waits = false;  ///< read, but not due yet
+    bool finished = false;    ///< open gestures have ended or were cancelled
+    Stamp newest;
+    InputQueue queue;
+
+    Subscribers<const GestureEvent&> event_callbacks;
+    Subscribers<const HandFrame&> hands_callbacks;
+    Subscribers<const PipelineView&> pipeline_callbacks;
+    std::atomic<int> last_handle{0};
+    EventQueue event_queue;
+
+    std::atomic<bool> stop_requested{false};
+    std::atomic<bool> running{false};
+    std::thread worker;
+    Result<void> worker_result;
+
+    mutable Mutex statistics_mutex;
+    SessionStatistics counters XTRACK_GUARDED_BY(statistics_mutex);
+    TimeHistogram whole_time XTRACK_GUARDED_BY(statistics_mutex);
+    TimeHistogram latency XTRACK_GUARDED_BY(statistics_mutex);
+};
+
+bool Session::Impl::read_due(Duration timeout) {
+    const auto deadline = Wall::now() + timeout;
+    if (!item_waits) {
+        input.read(pace == Pace::own_pace ? Duration::zero() : timeout, item);
+        if (item.status != SourceStatus::ok) {
+            return item.status != SourceStatus::timeout;
+        }
+        clock.begin(item.stamp);
+        item_waits = true;
+    }
+    const auto due = clock.due(item.stamp);
+    if (due > deadline) {
+        queue.wait_until(deadline);
+        return false;
+    }
+    queue.wait_until(due);
+    item_waits = false;
+    return true;
+}
+
+void Session::Impl::deliver(std::span<const GestureEvent> events) {
+    for (const GestureEvent& original : events) {
+        GestureEvent event = original;
+        event.sensor = newest;
+        event.emit = pace == Pace::replay ? event.sensor : clock.now(newest);
+        {
+            const MutexLock lock(statistics_mutex);
+            ++counters.events;
+            if (pace != Pace::replay) {
+                latency.add(event.emit - event.sensor);
+            }
+        }
+        event_queue.push(event);
+        event_callbacks.call(event);
+    }
+}
+
+void Session::Impl::tick() { deliver(processor.advance(clock.now(newest))); }
+
+Result<StepStatus> Session::Impl::finish(StepStatus how) {
+    if (!finished) {
+        finished = true;
+        deliver(how == StepStatus::end ? processor.recogniser().finish()
+                                       : processor.recogniser().abandon(CancelReason::disengaged));
+    }
+    return how;
+}
+
+Result<StepStatus> Session::Impl::take() {
+    switch (item.status) {
+        case SourceStatus::ok: break;
+        case SourceStatus::timeout:
+        case SourceStatus::lost: tick(); return StepStatus::waiting;
+        case SourceStatus::end: return finish(StepStatus::end);
+        case SourceStatus::failed:
+            (void)finish(StepStatus::stopped);
+            return Error{ErrorCode::device_lost, item.message};
+    }
+    const auto begin = Wall::now();
+    auto outcome = processor.process(item);
+    if (!outcome) {
+        (void)finish(StepStatus::stopped);
+        return outcome.error();
+    }
+    newest = item.stamp;
+    deliver(outcome->events);
+    if (outcome->view.interaction_hands != nullptr) {
+        hands_callbacks.call(*outcome->view.interaction_hands);
+    }
+    pipeline_callbacks.call(outcome->view);
+    const MutexLock lock(statistics_mutex);
+    whole_time.add(Wall::now() - begin);
+    ++counters.items;
+    counters.rejected = processor.rejected();
+    counters.depth_frames = processor.depth_frames();
+    counters.decode = statistics_of(processor.decode_time());
+    counters.track = statistics_of(processor.track_time());
+    counters.recognise = statistics_of(processor.recognise_time());
+    return StepStatus::processed;
+}
+
+Result<StepStatus> Session::Impl::step(Duration timeout) {
+    if (stop_requested) {
+        return finish(StepStatus::stopped);
+    }
+    if (finished) {
+        return StepStatus::end;
+    }
+    if (!read_due(timeout)) {
+        tick();
+        return StepStatus::waiting;
+    }
+    return take();
+}
+
+void Session::Impl::read_live() {
+    InputItem read;
+    while (!queue.closed()) {
+        input.read(kTick, read);
+        if (read.status == SourceStatus::timeout) {
+            continue;
+        }
+        const bool last = read.status == SourceStatus::end || read.status == SourceStatus::failed;
+        if (read.status == SourceStatus::ok) {
+            clock.begin(read.stamp);
+            if (!queue.wait_until(clock.due(read.stamp))) {
+                return;
+            }
+        }
+        queue.push(read);
+        if (last) {
+            return;
+        }
+    }
+}
+
+Result<void> Session::Impl::run_live() {
+    std::thread reader([this] { read_live(); });
+    Result<void> result;
+    try {
+        while (true) {
+            if (stop_requested) {
+                (void)finish(StepStatus::stopped);
+                break;
+            }
+            if (!queue.pop(item, kTick)) {
+                tick();
+                continue;
+            }
+            const auto status = take();
+            if (!status) {
+                result = status.error();
+                break;
+            }
+            if (*status == StepStatus::end) {
+                break;
+            }
+        }
+    } catch (...) {
+        queue.close();
+        reader.join();
+        throw;
+    }
+    queue.close();
+    reader.join();
+    return result;
+}
+
+Result<void> Session::Impl::run() {
+    if (pace != Pace::replay) {
+        return run_live();
+    }
+    while (true) {
+        const auto status = step(kTick);
+        if (!status) {
+            return status.error();
+        }
+        if (*status == StepStatus::end || *status == StepStatus::stopped) {
+            return {};
+        }
+    }
+}
+
+// --- The public face -----------------------------------------------------------------------------
+
+namespace {
+
+/// Callbacks are the caller's code: what they throw must not cross our threads and API.
+template <typename Call>
+auto guarded(Call&& call) noexcept -> decltype(call()) {
+    try {
+        return call();
+    } catch (const std::exception& e) {
+        return Error{ErrorCode::invalid_argument, std::string("a callback threw: ") + e.what()};
+    } catch (...) {
+        return Error{ErrorCode::invalid_argument, "a callback threw something unknown"};
+    }
+}
+
+/// Only one of run(), step() and the session's own thread at a time.
+class Turn {
+ public:
+    explicit Turn(std::atomic<bool>& running) : running_(running), mine_(!running.exchange(true)) {}
+    ~Turn() {
+        if (mine_) {
+            running_ = false;
+        }
+    }
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+    [[nodiscard]] bool mine() const noexcept { return mine_; }
+
+ private:
+    std::atomic<bool>& running_;
+    bool mine_;
+};
+
+Error already_running() {
+    return {ErrorCode::invalid_argument,
+            "the session runs already; use one of run(), start() and step() at a time"};
+}
+
+}  // namespace
+
+Session::Session(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Session::Session(Session&&) noexcept = default;
+
+Session& Session::operator=(Session&& other) noexcept {
+    std::swap(impl_, other.impl_);
+    return *this;
+}
+
+Session::~Session() {
+    if (impl_) {
+        stop();
+        if (impl_->worker.joinable()) {
+            impl_->worker.join();
+        }
+    }
+}
+
+Result<Session> Session::create(std::unique_ptr<FrameSource> source,
+                                const SessionOptions& options) {
+    if (!source) {
+        return Error{ErrorCode::invalid_argument, "Session::create: the source is null"};
+    }
+    auto processor = Processor::for_frames(source->rig(), source->patterns(), options);
+    if (!processor) {
+        return processor.error();
+    }
+    return Session(
+        std::make_unique<Impl>(Input(std::move(source)), std::move(*processor), options.pace));
+}
+
+Result<Session> Session::create(std::unique_ptr<DepthSource> source,
+                                const SessionOptions& options) {
+    if (!source) {
+        return Error{ErrorCode::invalid_argument, "Session::create: the source is null"};
+    }
+    auto processor = Processor::for_depth(source->rig(), options);
+    if (!processor) {
+        return processor.error();
+    }
+    return Session(
+        std::make_unique<Impl>(Input(std::move(source)), std::move(*processor), options.pace));
+}
+
+Result<Session> Session::create(std::unique_ptr<HandSource> source, const SessionOptions& options) {
+    if (!source) {
+        return Error{ErrorCode::invalid_argument, "Session::create: the source is null"};
+    }
+    auto processor = Processor::for_hands(options);
+    if (!processor) {
+        return processor.error();
+    }
+    return Session(
+        std::make_unique<Impl>(Input(std::move(source)), std::move(*processor), options.pace));
+}
+
+int Session::subscribe(EventCallback callback) {
+    return impl_->event_callbacks.add(++impl_->last_handle, std::move(callback));
+}
+
+int Session::subscribe(GestureType type, EventCallback callback) {
+    return subscribe([type, call = std::move(callback)](const GestureEvent& event) {
+        if (event.type == type) {
+            call(event);
+        }
+    });
+}
+
+int Session::subscribe_hands(HandsCallback callback) {
+    return impl_->hands_callbacks.add(++impl_->last_handle, std::move(callback));
+}
+
+int Session::subscribe_pipeline(PipelineCallback callback) {
+    return impl_->pipeline_callbacks.add(++impl_->last_handle, std::move(callback));
+}
+
+void Session::unsubscribe(int handle) {
+    impl_->event_callbacks.remove(handle);
+    impl_->hands_callbacks.remove(handle);
+    impl_->pipeline_callbacks.remove(handle);
+}
+
+bool Session::poll(GestureEvent& event) { return impl_->event_queue.pop(event); }
+
+Result<void> Session::run() {
+    const Turn turn(impl_->running);
+    if (!turn.mine()) {
+        return already_running();
+    }
+    return guarded([this] { return impl_->run(); });
+}
+
+Result<void> Session::start() {
+    if (impl_->worker.joinable() || impl_->running.exchange(true)) {
+        return already_running();
+    }
+    // The thread keeps the Impl and not the Session, which may be moved meanwhile.
+    Impl* impl = impl_.get();
+    impl->worker = std::thread([impl] {
+        impl->worker_result = guarded([impl] { return impl->run(); });
+        impl->running = false;
+    });
+    return {};
+}
+
+Result<void> Session::wait() {
+    if (impl_->worker.joinable()) {
+        impl_->worker.join();
+    }
+    return impl_->worker_result;
+}
+
+Result<StepStatus> Session::step(Duration timeout) {
+    const Turn turn(impl_->running);
+    if (!turn.mine()) {
+        return already_running();
+    }
+    return guarded([this, timeout] { return impl_->step(timeout); });
+}
+
+void Session::stop() noexcept {
+    impl_->stop_requested = true;
+    impl_->queue.close();
+}
+
+SessionStatistics Session::statistics() const {
+    const MutexLock lock(impl_->statistics_mutex);
+    SessionStatistics s = impl_->counters;
+    s.whole = statistics_of(impl_->whole_time);
+    s.latency = statistics_of(impl_->latency);
+    s.dropped = impl_->queue.dropped();
+    s.events_dropped = impl_->event_queue.dropped();
+    return s;
+}
+
+}  // namespace xtrack

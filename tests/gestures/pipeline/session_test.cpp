@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <xtrack/session.hpp>
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace xtrack {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration kFrame = std::chrono::microseconds(16667);
+constexpr float kSwipeSpeed_mmps = 800.0F;
+constexpr double kRest_s = 0.6;
+constexpr double kStroke_s = 0.35;
+
+/// A right hand held up, flat side to the left, that rests, strokes to the left and rests again.
+class SwipingHand final : public HandSource {
+ public:
+    explicit SwipingHand(int frames, SourceStatus after = SourceStatus::end)
+        : frames_(frames), after_(after) {}
+
+    SourceStatus next(Duration timeout, HandFrame& out, std::string& message) override {
+        if (next_ == frames_) {
+            message = "the hand is gone";
+            if (after_ == SourceStatus::timeout) {
+                std::this_thread::sleep_for(timeout);
+            }
+            return after_;
+        }
+        const double t = to_seconds(kFrame) * next_;
+        const double moved = std::clamp(t - kRest_s, 0.0, kStroke_s);
+        out = HandFrame{};
+        out.stamp = Stamp{} + kFrame * next_++;
+        out.coordinates = CoordinateFrame::interaction;
+        out.count = 1;
+        Hand& hand = out.hands[0];
+        hand.id = 1;
+        hand.chirality = Chirality::right;
+        hand.chirality_confidence = 1.0F;
+        hand.confidence = 1.0F;
+        const Vec3f palm(150.0F - kSwipeSpeed_mmps * static_cast<float>(moved), 0.0F, 500.0F);
+        const auto put = [&](Joint j, float x, float y, float z) {
+            hand.joint(j) = {palm + Vec3f(x, y, z), true};
+        };
+        put(Joint::palm, 0, 0, 0);
+        put(Joint::wrist, 0, -90, 0);
+        const Joint firsts[4] = {Joint::index_proximal, Joint::middle_proximal,
+                                 Joint::ring_proximal, Joint::little_proximal};
+        for (int f = 0; f < 4; ++f) {
+            for (int k = 0; k < 4; ++k) {
+                const auto joint = static_cast<Joint>(static_cast<int>(firsts[f]) + k);
+                put(joint, 0.0F, 20.0F + 28.0F * static_cast<float>(k),
+                    -30.0F + 20.0F * static_cast<float>(f));
+            }
+        }
+        put(Joint::thumb_proximal, 0, 0, -40);
+        put(Joint::thumb_distal, 0, 20, -60);
+        put(Joint::thumb_tip, 0, 40, -75);
+        return SourceStatus::ok;
+    }
+
+ private:
+    int frames_;
+    SourceStatus after_;
+    int next_ = 0;
+};
+
+Result<Session> swiping_session(Pace pace = Pace::replay, int frames = 100,
+                                SourceStatus after = SourceStatus::end) {
+    SessionOptions options;
+    options.pace = pace;
+    return Session::create(std::unique_ptr<HandSource>(new SwipingHand(frames, after)), options);
+}
+
+TEST(Session, CallsBackForTheGestureSubscribedTo) {
+    auto session = swiping_session();
+    ASSERT_TRUE(session) << session.error().message;
+    std::vector<GestureEvent> swipes;
+    int pushes = 0;
+    session->subscribe(GestureType::swipe, [&](const GestureEvent& e) { swipes.push_back(e); });
+    session->subscribe(GestureType::push, [&](const GestureEvent&) { ++pushes; });
+    ASSERT_TRUE(session->run());
+    ASSERT_EQ(swipes.size(), 2U);
+    EXPECT_EQ(swipes[0].phase, EventPhase::begin);
+    EXPECT_EQ(swipes[1].phase, EventPhase::end);
+    EXPECT_EQ(swipes[1].direction, Direction::left);
+    EXPECT_EQ(swipes[1].hand, Chirality::right);
+    EXPECT_EQ(pushes, 0);
+    // It commits after 100 mm, and the replay's clock is the stream's.
+    EXPECT_NEAR(to_seconds(swipes[1].sensor - Stamp{}), kRest_s + 100.0 / kSwipeSpeed_mmps, 0.08);
+    EXPECT_EQ(swipes[1].emit, swipes[1].sensor);
+}
+
+TEST(Session, TwoReplaysGiveTheSameEvents) {
+    std::string runs[2];
+    for (std::string& text : runs) {
+        auto session = swiping_session();
+        ASSERT_TRUE(session);
+        session->subscribe([&](const GestureEvent& e) { text += to_json(e) + "\n"; });
+        ASSERT_TRUE(session->run());
+    }
+    EXPECT_FALSE(runs[0].empty());
+    EXPECT_EQ(runs[0], runs[1]);
+}
+
+TEST(Session, PollsTheSameEvents) {
+    auto session = swiping_session();
+    ASSERT_TRUE(session);
+    std::vector<std::string> called;
+    session->subscribe([&](const GestureEvent& e) { called.push_back(to_json(e)); });
+    ASSERT_TRUE(session->run());
+    std::vector<std::string> polled;
+    GestureEvent e;
+    while (session->poll(e)) {
+        polled.push_back(to_json(e));
+    }
+    EXPECT_FALSE(polled.empty());
+    EXPECT_EQ(polled, called);
+}
+
+TEST(Session, StepsInTheCallersThread) {
+    auto session = swiping_session();
+    ASSERT_TRUE(session);
+    const auto mine = std::this_thread::get_id();
+    int swipes = 0;
+    session->subscribe(GestureType::swipe, [&](const GestureEvent&) {
+        EXPECT_EQ(std::this_thread::get_id(), mine);
+        ++swipes;
+    });
+    int processed = 0;
+    for (int i = 0; i < 100; ++i) {
+        const auto status = session->step();
+        ASSERT_TRUE(status);
+        processed += *status == StepStatus::processed ? 1 : 0;
+    }
+    EXPECT_EQ(processed, 100);
+    auto last = session->step();
+    ASSERT_TRUE(last);
+    EXPECT_EQ(*last, StepStatus::end);
+    last = session->step();
+    ASSERT_TRUE(last);
+    EXPECT_EQ(*last, StepStatus::end);
+    EXPECT_EQ(swipes, 2);
+}
+
+TEST(Session, StopsFromACallback) {
+    auto session = swiping_session(Pace::replay, 10'000);
+    ASSERT_TRUE(session);
+    session->subscribe(GestureType::swipe, [&](const GestureEvent&) { session->stop(); });
+    ASSERT_TRUE(session->run());
+    EXPECT_LT(session->statistics().items, 100U);
+    const auto after = session->step();
+    ASSERT_TRUE(after);
+    EXPECT_EQ(*after, StepStatus::stopped);
+}
+
+TEST(Session, StopsFromAnotherThreadWhileASourceIsSilent) {
+    auto session = swiping_session(Pace::own_pace, 3, SourceStatus::timeout);
+    ASSERT_TRUE(session);
+    ASSERT_TRUE(session->start());
+    EXPECT_FALSE(session->start());
+    EXPECT_FALSE(session->run());
+    while (session->statistics().items < 3) {
+        std::this_thread::sleep_for(1ms);
+    }
+    session->stop();
+    EXPECT_TRUE(session->wait());
+    session->stop();  // again is harmless
+}
+
+TEST(Session, IsDestroyedWhileItRuns) {
+    auto session = swiping_session(Pace::own_pace, 3, SourceStatus::timeout);
+    ASSERT_TRUE(session);
+    ASSERT_TRUE(session->start());
+}
+
+TEST(Session, OwnPaceTakesAsLongAsTheRecording) {
+    constexpr int kFrames = 12;
+    auto session = swiping_session(Pace::own_pace, kFrames);
+    ASSERT_TRUE(session);
+    const auto begin = std::chrono::steady_clock::now();
+    ASSERT_TRUE(session->run());
+    EXPECT_GE(std::chrono::steady_clock::now() - begin, kFrame * (kFrames - 1));
+}
+
+TEST(Session, AStepThatIsNotDueWaitsNoLongerThanAsked) {
+    auto session = swiping_session(Pace::own_pace, 3);
+    ASSERT_TRUE(session);
+    auto status = session->step();
+    ASSERT_TRUE(status);
+    EXPECT_EQ(*status, StepStatus::processed);
+    status = session->step();
+    ASSERT_TRUE(status);
+    EXPECT_EQ(*status, StepStatus::waiting);
+    status = session->step(1s);
+    ASSERT_TRUE(status);
+    EXPECT_EQ(*status, StepStatus::processed);
+}
+
+TEST(Session, ACallbackThatThrowsEndsItWithAnError) {
+    for (const Pace pace : {Pace::replay, Pace::own_pace}) {
+        auto session = swiping_session(pace);
+        ASSERT_TRUE(session);
+        session->subscribe_hands([](const HandFrame&) { throw std::runtime_error("no more"); });
+        const auto result = session->run();
+        ASSERT_FALSE(result);
+        EXPECT_NE(result.error().message.find("no more"), std::string::npos);
+    }
+}
+
+TEST(Session, ASourceThatFailsEndsItWithTheSourcesWords) {
+    auto session = swiping_session(Pace::replay, 5, SourceStatus::failed);
+    ASSERT_TRUE(session);
+    const auto result = session->run();
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error().message, "the hand is gone");
+}
+
+TEST(Session, UnsubscribedCallbacksAreNotCalled) {
+    auto session = swiping_session();
+    ASSERT_TRUE(session);
+    int calls = 0;
+    const int a = session->subscribe([&](const GestureEvent&) { ++calls; });
+    int frames = 0;
+    session->subscribe_hands([&](const HandFrame&) { ++frames; });
+    session->unsubscribe(a);
+    ASSERT_TRUE(session->run());
+    EXPECT_EQ(calls, 0);
+    EXPECT_EQ(frames, 100);
+}
+
+TEST(Session, RefusesNoSourceAndWrongSettings) {
+    EXPECT_FALSE(Session::create(std::unique_ptr<HandSource>(), {}));
+    SessionOptions options;
+    options.gestures.swipe_speed_mmps = -1.0;
+    const auto session = Session::create(std::unique_ptr<HandSource>(new SwipingHand(1)), options);
+    ASSERT_FALSE(session);
+    EXPECT_NE(session.error().message.find("swipe_speed_mmps"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace xtrack

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gestures/pipeline/stream_clock.hpp"
+
+#include <gtest/gtest.h>
+
+namespace xtrack {
+namespace {
+
+TEST(StreamClock, ReplayHasNoTimeButTheStream) {
+    StreamClock clock(Pace::replay);
+    clock.begin(Stamp::from_us(5));
+    EXPECT_EQ(clock.now(Stamp::from_us(77)), Stamp::from_us(77));
+    EXPECT_LE(clock.due(Stamp::from_us(1'000'000'000)), StreamClock::Wall::now());
+}
+
+TEST(StreamClock, OwnPaceCountsFromTheFirstStamp) {
+    StreamClock clock(Pace::own_pace);
+    const Stamp first = Stamp::from_us(9'000'000);
+    const auto before = StreamClock::Wall::now();
+    clock.begin(first);
+    clock.begin(Stamp::from_us(1));  // only the first counts
+    const auto after = StreamClock::Wall::now();
+    const auto due = clock.due(first + std::chrono::milliseconds(250));
+    EXPECT_GE(due, before + std::chrono::milliseconds(250));
+    EXPECT_LE(due, after + std::chrono::milliseconds(250));
+    EXPECT_GE(clock.now(first), first);
+    EXPECT_LT(clock.now(first), first + std::chrono::seconds(10));
+}
+
+TEST(StreamClock, LiveIsTheMonotonicClock) {
+    const StreamClock clock(Pace::live);
+    const auto wall = StreamClock::Wall::now().time_since_epoch();
+    const Stamp now = clock.now({});
+    EXPECT_GE(now.ns, std::chrono::duration_cast<Duration>(wall).count());
+    EXPECT_LT(now.ns, std::chrono::duration_cast<Duration>(wall).count() + 1'000'000'000);
+}
+
+}  // namespace
+}  // namespace xtrack

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <exception>
+#include <string>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "tools/commands.hpp"
+#include "tools/stream.hpp"
+
+namespace {
+
+int run(int argc, char** argv) {
+    CLI::App app("xTrack: depth from projected fringes, hands from depth, gestures from hands",
+                 "xtrack");
+    app.set_version_flag("--version", XTRACK_VERSION);
+    app.require_subcommand(1);
+    int exit_status = 0;
+    xtrack::tools::add_run(app, exit_status);
+    xtrack::tools::add_replay(app, exit_status);
+    xtrack::tools::add_decode(app, exit_status);
+    xtrack::tools::add_eval(app, exit_status);
+    xtrack::tools::add_demo(app, exit_status);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        // CLI11 gives every kind of mistake a number of its own; users know one: wrong usage.
+        return app.exit(error) == 0 ? 0 : 2;
+    }
+    return exit_status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return run(argc, argv);
+    } catch (const std::exception& error) {
+        return xtrack::tools::fail({xtrack::ErrorCode::io, error.what()});
+    }
+}

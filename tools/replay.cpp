@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "tools/commands.hpp"
+#include "tools/stream.hpp"
+
+namespace xtrack::tools {
+
+void add_replay(CLI::App& app, int& exit_status) {
+    auto* command = app.add_subcommand(
+        "replay", "Events of a recording (fringes, depth or joints): deterministic, drops nothing");
+    const auto folder = std::make_shared<std::string>();
+    const auto stream = std::make_shared<StreamOptions>();
+    command->add_option("REC", *folder, "Folder of the recording")->required();
+    add_stream_options(*command, *stream);
+    command->callback([=, &exit_status] {
+        SessionOptions options;
+        options.pace = Pace::replay;
+        if (const auto chosen = choose_gestures(stream->gestures, options.gestures); !chosen) {
+            exit_status = usage(chosen.error());
+            return;
+        }
+        auto session = Session::open(*folder, options);
+        exit_status = session ? play(*session, *stream, options.pace) : fail(session.error());
+    });
+}
+
+}  // namespace xtrack::tools

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <xtrack/sim.hpp>
+
+#include "tools/commands.hpp"
+#include "tools/stream.hpp"
+
+namespace xtrack::tools {
+
+namespace {
+
+struct RunOptions {
+    std::string source = "sim";
+    std::uint64_t seed = 0;
+    StreamOptions stream;
+};
+
+/// `sim` with a seed is another person on another day; without one it is the same as everywhere.
+Result<Session> open(const RunOptions& run, const SessionOptions& options) {
+    if (run.seed == 0) {
+        return Session::open(run.source, options);
+    }
+    if (run.source != "sim" && !run.source.starts_with("sim:")) {
+        return Error{ErrorCode::invalid_argument,
+                     "--seed: only the simulator has one; leave it out for " + run.source};
+    }
+    const std::string preset = run.source == "sim" ? "ideal-60" : run.source.substr(4);
+    auto settings = SimSettings::preset(preset);
+    if (!settings) {
+        return settings.error();
+    }
+    settings->vary(run.seed);
+    auto rig = SimulatedRig::create(*settings);
+    if (!rig) {
+        return rig.error();
+    }
+    return Session::create(std::unique_ptr<FrameSource>(std::move(*rig)), options);
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, int& exit_status) {
+    auto* command = app.add_subcommand("run", "Events as they happen, with their latency");
+    const auto run = std::make_shared<RunOptions>();
+    command
+        ->add_option("SOURCE", run->source,
+                     "sim, sim:ideal-60, sim:webcam-30, or the folder of a recording, which is "
+                     "played at its own pace")
+        ->default_str("sim");
+    command->add_option("--seed", run->seed, "Simulator: another person, movement and noise")
+        ->check(CLI::PositiveNumber);
+    add_stream_options(*command, run->stream);
+    command->callback([=, &exit_status] {
+        SessionOptions options;
+        options.pace = Pace::own_pace;
+        if (const auto chosen = choose_gestures(run->stream.gestures, options.gestures); !chosen) {
+            exit_status = usage(chosen.error());
+            return;
+        }
+        auto session = open(*run, options);
+        exit_status = session ? play(*session, run->stream, options.pace) : fail(session.error());
+    });
+}
+
+}  // namespace xtrack::tools

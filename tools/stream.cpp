@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/stream.hpp"
+
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <map>
+#include <sstream>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+namespace xtrack::tools {
+
+namespace {
+
+constexpr std::array<std::pair<const char*, bool GestureSettings::*>, 3> kSwitches = {{
+    {"swipe", &GestureSettings::swipe},
+    {"push", &GestureSettings::push},
+    {"pinch", &GestureSettings::pinch},
+}};
+
+std::string known_gestures() {
+    std::string names;
+    for (const auto& [name, member] : kSwitches) {
+        names += names.empty() ? name : std::string(", ") + name;
+    }
+    return names;
+}
+
+volatile std::sig_atomic_t signal_received = 0;
+void note_signal(int) { signal_received = 1; }
+
+/// Ctrl-C and SIGTERM end the session in order: what is open is cancelled, statistics are printed.
+/// A handler may hardly do anything, so it leaves a note that a thread reads.
+class StopOnSignal {
+ public:
+    explicit StopOnSignal(Session& session) {
+        signal_received = 0;
+        std::signal(SIGINT, note_signal);
+        std::signal(SIGTERM, note_signal);
+        watcher_ = std::jthread([&session](const std::stop_token& over) {
+            while (!over.stop_requested()) {
+                if (signal_received != 0) {
+                    session.stop();
+                }
+                std::this_thread::sleep_for(kPoll);
+            }
+        });
+    }
+    ~StopOnSignal() {
+        std::signal(SIGINT, SIG_DFL);
+        std::signal(SIGTERM, SIG_DFL);
+    }
+    StopOnSignal(const StopOnSignal&) = delete;
+    StopOnSignal& operator=(const StopOnSignal&) = delete;
+
+ private:
+    static constexpr std::chrono::milliseconds kPoll{20};
+    std::jthread watcher_;
+};
+
+}  // namespace
+
+void add_stream_options(CLI::App& command, StreamOptions& options) {
+    static const std::map<std::string, EventFormat> formats = {
+        {"text", EventFormat::text}, {"jsonl", EventFormat::jsonl}, {"none", EventFormat::none}};
+    static const std::map<std::string, EventFormat> hand_formats = {{"jsonl", EventFormat::jsonl},
+                                                                    {"none", EventFormat::none}};
+    command.add_option(
+        "--gestures", options.gestures,
+        "Comma-separated list of what is recognised: " + known_gestures() + " (default: all)");
+    command.add_option("--events", options.events, "How events are printed: text, jsonl or none")
+        ->transform(CLI::CheckedTransformer(formats))
+        ->default_str("text");
+    command.add_option("--hands", options.hands, "Print every hand of every frame: jsonl or none")
+        ->transform(CLI::CheckedTransformer(hand_formats))
+        ->default_str("none");
+    command.add_flag("--stats", options.statistics,
+                     "At the end, print the time of every stage on stderr");
+    command.add_flag("--json", options.json, "Events as jsonl, and --stats as JSON");
+}
+
+Result<void> choose_gestures(const std::string& list, GestureSettings& settings) {
+    if (list.empty()) {
+        return {};
+    }
+    for (const auto& [name, member] : kSwitches) {
+        settings.*member = false;
+    }
+    std::istringstream names(list);
+    for (std::string wanted; std::getline(names, wanted, ',');) {
+        bool found = false;
+        for (const auto& [name, member] : kSwitches) {
+            if (wanted == name) {
+                settings.*member = true;
+                found = true;
+            }
+        }
+        if (!found) {
+            return Error{ErrorCode::invalid_argument,
+                         fmt::format("--gestures: '{}' is not known; choose from {}", wanted,
+                                     known_gestures())};
+        }
+    }
+    return {};
+}
+
+int play(Session& session, const StreamOptions& options, Pace pace) {
+    const EventFormat format =
+        options.json && options.events == EventFormat::text ? EventFormat::jsonl : options.events;
+    session.subscribe(
+        [format, pace](const GestureEvent& event) { print_event(stdout, format, event, pace); });
+    if (options.hands == EventFormat::jsonl) {
+        session.subscribe_pipeline([](const PipelineView& view) {
+            const HandFrame* hands =
+                view.camera_hands != nullptr ? view.camera_hands : view.interaction_hands;
+            if (hands == nullptr) {
+                return;
+            }
+            for (const Hand& hand : hands->all()) {
+                fmt::print("{}\n", to_json(*hands, hand));
+            }
+        });
+    }
+    const StopOnSignal guard(session);
+    const Result<void> result = session.run();
+    std::fflush(stdout);
+    if (options.statistics) {
+        const SessionStatistics statistics = session.statistics();
+        fmt::print(stderr, "{}\n", options.json ? to_json(statistics) : to_text(statistics));
+    }
+    return result ? 0 : fail(result.error());
+}
+
+int fail(const Error& error) {
+    fmt::print(stderr, "xtrack: {}\n", error.message);
+    return 1;
+}
+
+int usage(const Error& error) {
+    (void)fail(error);
+    return 2;
+}
+
+}  // namespace xtrack::tools

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include <CLI/App.hpp>
+#include <xtrack/session.hpp>
+
+#include "tools/event_output.hpp"
+
+namespace xtrack::tools {
+
+/// What `run` and `replay` share: which gestures, and what is printed.
+struct StreamOptions {
+    std::string gestures;
+    EventFormat events = EventFormat::text;
+    EventFormat hands = EventFormat::none;
+    bool statistics = false;
+    bool json = false;
+};
+
+void add_stream_options(CLI::App& command, StreamOptions& options);
+
+/// Turns a list such as `swipe,pinch` into switches.
+/// @errors invalid_argument: names the one that is not known, and those that are
+[[nodiscard]] Result<void> choose_gestures(const std::string& list, GestureSettings& settings);
+
+/// Runs a session to its end and prints. @return the exit status
+int play(Session& session, const StreamOptions& options, Pace pace);
+
+/// Print `xtrack: message` on stderr. @return the exit status of a failure, 1, or of wrong usage, 2
+int fail(const Error& error);
+int usage(const Error& error);
+
+}  // namespace xtrack::tools
