@@ -7,14 +7,17 @@ set(XTRACK_STAGES
     gestures/pipeline)
 
 # Which stage a public header <xtrack/NAME.hpp> belongs to. Nouns that several stages share belong
-# to core/base. A public header that is missing here fails the build.
+# to the earliest of them. A public header that is missing here fails the build.
 set(XTRACK_HEADERS_core/base depth frame geometry image pattern phase_map point_cloud result rig
                              source stamp)
 set(XTRACK_HEADERS_core/pattern pattern_timeline)
+set(XTRACK_HEADERS_core/capture null_source recording)
+set(XTRACK_HEADERS_core/sim sim)
+set(XTRACK_HEADERS_core/decode decode_settings)
 set(XTRACK_HEADERS_core/pipeline depth_decoder)
-set(XTRACK_HEADERS_gestures/segment hand_region)
-set(XTRACK_HEADERS_gestures/track hand hand_source hand_tracker tracker_settings)
-set(XTRACK_HEADERS_gestures/recognise gesture_event gesture_settings)
+set(XTRACK_HEADERS_gestures/segment hand hand_region tracker_settings)
+set(XTRACK_HEADERS_gestures/track hand_source hand_tracker one_euro_filter)
+set(XTRACK_HEADERS_gestures/recognise gesture_event gesture_recogniser gesture_settings)
 set(XTRACK_HEADERS_gestures/session session)
 
 # The only folders that may include headers of an operating system.
