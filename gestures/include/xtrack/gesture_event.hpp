@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -38,7 +38,7 @@ struct GestureEvent {
     Direction direction = Direction::none;
     EventPhase phase = EventPhase::begin;
     CancelReason cancel_reason = CancelReason::none;
-    int gesture_id = 0;  ///< the same from begin to end; never used again
+    int gesture_id = -1;  ///< the same from begin to end, never used again; -1 for hand events
     int hand_id = 0;
     Chirality hand = Chirality::unknown;
     float hand_confidence = 0.0F;

@@ -5,12 +5,103 @@
 
 namespace xtrack {
 
-/// Every threshold of the recognisers, each with its unit in its name and its source beside it.
+/// Every threshold of the recognisers, each with its unit in its name, then its range and its
+/// source. Lengths are of a real hand in mm, so they do not depend on the camera.
 /// @since 0.1
 struct GestureSettings {
     bool swipe = true;
     bool push = true;
     bool pinch = true;
+
+    // --- the hand itself -------------------------------------------------------------------------
+    /// Below it a hand counts as not seen. 0..1. MediaPipe's and OpenXR runtimes' usual line.
+    double hand_confidence = 0.6;
+    /// Seen for so long before it counts. 0..1000. Two to three frames at 30 fps.
+    double hand_valid_ms = 100.0;
+    /// Not seen for so long: what is active is cancelled. 20..1000. Three frames at 30 fps.
+    double lost_freeze_ms = 120.0;
+    /// Not seen for so long: gone; until then it comes back without an entry. 120..2000.
+    double gone_ms = 300.0;
+    /// No events for so long after a hand enters: its way in is no gesture. 0..2000. Leap, Kinect.
+    double entry_lockout_ms = 300.0;
+    /// Window of the line fit that gives velocity. 60..200. Less is noise, more is lag.
+    double velocity_window_ms = 100.0;
+
+    // --- swipe -----------------------------------------------------------------------------------
+    /// Mean over the stroke, hand held like a paddle. 100..3000. NiTE1 250, TouchFree 625.
+    double swipe_speed_mmps = 270.0;
+    /// Length at which it commits. 40..600. TouchFree.
+    double swipe_length_mm = 100.0;
+    /// The candidate dies below it, and none begins. 50..1000; above three sigma of the velocity of
+    /// a hand with 3 mm of noise (65 mm/s at 15 fps).
+    double swipe_dies_mmps = 200.0;
+    /// From the horizontal, in the x-y plane. 5..44. NiTE1.
+    double swipe_horizontal_deg = 25.0;
+    /// From the vertical, in the x-y plane. 5..44. NiTE1.
+    double swipe_vertical_deg = 20.0;
+    /// Out of the x-y plane; a push is steeper. 10..60.
+    double swipe_depth_deg = 45.0;
+    /// Sideways motion allowed: this, and a share of the length. 5..200; 0..1.
+    double swipe_sideways_mm = 30.0;
+    double swipe_sideways_share = 0.2;
+    /// After a commit the opposite direction is barred so long *and* until the hand has been
+    /// slower than swipe_rest_mmps. 0..2000; 10..200. The return stroke is no swipe.
+    double swipe_return_bar_ms = 450.0;
+    double swipe_rest_mmps = 65.0;
+    /// Within so long an opposite stroke that is slower than this share of the swipe's speed brings
+    /// the hand back. 0..5000; 0..1.
+    double swipe_return_memory_ms = 1500.0;
+    double swipe_return_share = 0.8;
+    /// The hand's flat side leads when palm direction . motion is above it. 0.1..1. Measured on
+    /// joints: swipes 0.6..1.0, hands carried from place to place -0.3..0.4.
+    double swipe_facing = 0.5;
+    /// A hand that is merely carried (flat side not in front) or that points must move with this
+    /// much more intent. 100..3000; 40..600. Measured: carried hands reach 390 mm/s over 180 mm.
+    double swipe_carried_speed_mmps = 480.0;
+    double swipe_carried_length_mm = 150.0;
+    /// Mean extension of middle, ring and little finger under which a hand points. 0..1. Circles
+    /// and letters are drawn at 0.1..0.45, swipes made at 0.5..1.
+    double swipe_pointing_extension = 0.45;
+    /// The index tip's share of the palm's way, as second vote. 0..1.
+    double swipe_tip_share = 0.5;
+
+    // --- push ------------------------------------------------------------------------------------
+    /// Mean speed over the window. 100..3000; 100..600. NiTE1.
+    double push_speed_mmps = 330.0;
+    double push_window_ms = 240.0;
+    /// From the screen's normal. 5..60. NiTE1.
+    double push_cone_deg = 30.0;
+    /// From the motion before. 0..90. NiTE1.
+    double push_turn_deg = 20.0;
+    /// Slower for so long before the next. 20..500; 0..2000. NiTE1.
+    double push_stable_mmps = 130.0;
+    double push_stable_ms = 360.0;
+    /// As swipe_facing, for the palm toward the screen. 0..1.
+    double push_facing = 0.5;
+
+    // --- pinch -----------------------------------------------------------------------------------
+    /// Thumb tip to index tip, or the share of the hand's length if that is more. 5..40; 0..0.3.
+    /// LeapC has 18, widened for our noise.
+    double pinch_close_mm = 20.0;
+    double pinch_close_share = 0.11;
+    /// Opens again. 10..80; at least pinch_close_mm + 3 pinch_noise_mm. LeapC has 24.
+    double pinch_release_mm = 30.0;
+    /// Standard deviation of the aperture, for the hysteresis. 0..20. Measured: 2 to 3 mm.
+    double pinch_noise_mm = 3.0;
+    /// Closed for so long. 0..1000. LeapC.
+    double pinch_hold_ms = 50.0;
+    /// The approach: seen open by so much, at most so long before it closes. 20..120; 50..3000.
+    double pinch_open_mm = 40.0;
+    double pinch_approach_ms = 600.0;
+    /// Not while the palm moves faster. 20..1000. Measured: pinches begin at 5..120 mm/s.
+    double pinch_palm_mmps = 150.0;
+    /// The three other fingers stay: one that folds by more in the approach makes a fist or a
+    /// number, no pinch. 0.05..1 of the extension.
+    double pinch_others_fold = 0.35;
 };
+
+/// Checks every range and the relations between them.
+/// @return invalid_argument that names the setting, its value and its range
+[[nodiscard]] Result<void> validate(const GestureSettings& settings);
 
 }  // namespace xtrack

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <utility>
+
+#include <xtrack/gesture_event.hpp>
+#include <xtrack/gesture_recogniser.hpp>
+#include <xtrack/gesture_settings.hpp>
+
+#include "gestures/recognise/motion_history.hpp"
+
+namespace xtrack::recognise {
+
+/// Events of one call. More than two hands can cause in one frame, so that it cannot overflow.
+class Outbox {
+ public:
+    static constexpr std::size_t kCapacity = 64;
+
+    void clear() noexcept { count_ = 0; }
+    void add(const GestureEvent& event) noexcept {
+        if (count_ < kCapacity) {
+            events_[count_++] = event;
+        }
+    }
+    [[nodiscard]] std::span<const GestureEvent> all() const noexcept {
+        return {events_.data(), count_};
+    }
+
+ private:
+    std::array<GestureEvent, kCapacity> events_{};
+    std::size_t count_ = 0;
+};
+
+/// The one place that every transition and every refusal of every machine goes through.
+class TransitionLog {
+ public:
+    void set_sink(GestureRecogniser::TraceSink sink) { sink_ = std::move(sink); }
+    void write(const RecogniserTrace& line) const {
+        if (sink_) {
+            sink_(line);
+        }
+    }
+
+ private:
+    GestureRecogniser::TraceSink sink_;
+};
+
+/// Why the gestures of a hand are silent just now.
+enum class Gate {
+    open,
+    entering,  ///< the lock-out after it came
+    border,    ///< cut by the image's border
+};
+
+/// Why a candidate waits or dies; `why` is a literal, empty for no objection.
+struct Refusal {
+    const char* why = "";
+    double measured = 0.0;
+    double limit = 0.0;
+};
+
+/// What a machine is handed with every event. Borrowed for the call.
+struct Context {
+    const GestureSettings& settings;
+    const MotionHistory& history;
+    const Hand& hand;  ///< as last seen
+    Stamp sensor;      ///< newest frame of the decision
+    Stamp emit;
+    Gate gate = Gate::open;
+    bool taken = false;  ///< another, stronger gesture owns the hand
+    int& next_gesture_id;
+    Outbox& out;
+    const TransitionLog& log;
+};
+
+/// An event with everything filled in that comes from the hand.
+[[nodiscard]] GestureEvent event_of(const Context& c, GestureType type, EventPhase phase) noexcept;
+
+}  // namespace xtrack::recognise

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <xtrack/gesture_event.hpp>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace xtrack {
+
+namespace {
+
+constexpr int kLengthDigits = 1;  // 0.1 mm and 0.1 mm/s: below anything that is measured
+constexpr int kShareDigits = 3;
+
+void append(std::string& out, std::int64_t value) {
+    std::array<char, 24> buffer{};
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+    out.append(buffer.data(), end.ptr);
+}
+
+/// Independent of the locale; JSON has no infinities, and "-0.0" would be a difference of nothing.
+void append(std::string& out, float value, int digits) {
+    if (!std::isfinite(value)) {
+        out += "null";
+        return;
+    }
+    std::array<char, 64> buffer{};
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(),
+                                   static_cast<double>(value), std::chars_format::fixed, digits);
+    std::string_view text{buffer.data(), static_cast<std::size_t>(end.ptr - buffer.data())};
+    if (text.front() == '-' && text.find_first_not_of("-0.") == std::string_view::npos) {
+        text.remove_prefix(1);
+    }
+    out += text;
+}
+
+void append(std::string& out, const Vec3f& v) {
+    out += '[';
+    for (Eigen::Index i = 0; i < 3; ++i) {
+        out += i == 0 ? "" : ",";
+        append(out, v[i], kLengthDigits);
+    }
+    out += ']';
+}
+
+void append_quoted_or_null(std::string& out, bool known, const char* text) {
+    if (!known) {
+        out += "null";
+        return;
+    }
+    out += '"';
+    out += text;
+    out += '"';
+}
+
+}  // namespace
+
+const char* to_string(GestureType t) noexcept {
+    switch (t) {
+        case GestureType::hand: return "hand";
+        case GestureType::swipe: return "swipe";
+        case GestureType::push: return "push";
+        case GestureType::pinch: return "pinch";
+    }
+    return "unknown";
+}
+
+const char* to_string(Direction d) noexcept {
+    switch (d) {
+        case Direction::none: return "none";
+        case Direction::left: return "left";
+        case Direction::right: return "right";
+        case Direction::up: return "up";
+        case Direction::down: return "down";
+    }
+    return "unknown";
+}
+
+const char* to_string(EventPhase p) noexcept {
+    switch (p) {
+        case EventPhase::begin: return "begin";
+        case EventPhase::update: return "update";
+        case EventPhase::end: return "end";
+        case EventPhase::cancel: return "cancel";
+    }
+    return "unknown";
+}
+
+const char* to_string(CancelReason r) noexcept {
+    switch (r) {
+        case CancelReason::none: return "none";
+        case CancelReason::lost: return "lost";
+        case CancelReason::edge: return "edge";
+        case CancelReason::superseded: return "superseded";
+        case CancelReason::timeout: return "timeout";
+        case CancelReason::disengaged: return "disengaged";
+    }
+    return "unknown";
+}
+
+std::string name_of(const GestureEvent& event) {
+    std::string name = to_string(event.type);
+    if (event.direction != Direction::none) {
+        name += '_';
+        name += to_string(event.direction);
+    }
+    return name;
+}
+
+std::string to_json(const GestureEvent& e) {
+    std::string out;
+    out.reserve(512);
+    out += R"({"type":")";
+    out += to_string(e.type);
+    out += R"(","direction":)";
+    append_quoted_or_null(out, e.direction != Direction::none, to_string(e.direction));
+    out += R"(,"phase":")";
+    out += to_string(e.phase);
+    out += R"(","gesture_id":)";
+    if (e.gesture_id > 0) {
+        append(out, std::int64_t{e.gesture_id});
+    } else {
+        out += "null";
+    }
+    out += R"(,"hand_id":)";
+    append(out, std::int64_t{e.hand_id});
+    out += R"(,"hand":")";
+    out += to_string(e.hand);
+    out += R"(","hand_confidence":)";
+    append(out, e.hand_confidence, kShareDigits);
+    out += R"(,"t_onset_us":)";
+    append(out, e.onset.us());
+    out += R"(,"t_sensor_us":)";
+    append(out, e.sensor.us());
+    out += R"(,"t_emit_us":)";
+    append(out, e.emit.us());
+    out += R"(,"position_mm":)";
+    append(out, e.position_mm);
+    out += R"(,"velocity_mmps":)";
+    append(out, e.velocity_mmps);
+    out += R"(,"progress":)";
+    append(out, e.progress, kShareDigits);
+    out += R"(,"value":)";
+    append(out, e.value, kShareDigits);
+    out += R"(,"confidence":)";
+    append(out, e.confidence, kShareDigits);
+    out += R"(,"cancel_reason":)";
+    append_quoted_or_null(out, e.cancel_reason != CancelReason::none, to_string(e.cancel_reason));
+    out += '}';
+    return out;
+}
+
+}  // namespace xtrack

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include <xtrack/hand.hpp>
+#include <xtrack/stamp.hpp>
+
+namespace xtrack::recognise {
+
+[[nodiscard]] constexpr Duration from_ms(double ms) noexcept {
+    return Duration{static_cast<Duration::rep>(ms * 1e6)};
+}
+[[nodiscard]] constexpr double to_ms(Duration d) noexcept {
+    return static_cast<double>(d.count()) * 1e-6;
+}
+
+/// What the machines remember of a hand at one moment.
+struct MotionSample {
+    Stamp stamp;
+    Vec3f palm_mm = Vec3f::Zero();
+    Vec3f index_tip_mm = Vec3f::Zero();
+    bool index_tip_known = false;
+    Vec3f facing = Vec3f::Zero();  ///< unit, out of the palm; zero where no joints say it
+    bool facing_signed = false;    ///< false: the chirality is unknown, so either sign may be true
+    float aperture_mm = -1.0F;     ///< thumb tip to index tip; -1 = unknown
+    float hand_length_mm = 0.0F;   ///< 0 = unknown
+    std::array<float, kFingerCount> extension{-1.0F, -1.0F, -1.0F, -1.0F, -1.0F};
+    float thumb_to_middle_mm = -1.0F;  ///< tips; -1 = unknown
+
+    /// Mean extension of middle, ring and little finger; -1 where none is known.
+    [[nodiscard]] float outer_extension() const noexcept;
+};
+
+[[nodiscard]] MotionSample sample_of(const Hand& hand, Stamp stamp) noexcept;
+
+/// The last second of one hand, newest first. Fixed size; never allocates.
+class MotionHistory {
+ public:
+    /// Denser samples are left out, so that the ring holds a second at any frame rate.
+    static constexpr Duration kMinSpacing{3'500'000};
+    static constexpr std::size_t kCapacity = 288;
+
+    /// @return false when the sample was left out: not later than the newest, or too close to it
+    bool add(const MotionSample& sample) noexcept;
+    void clear() noexcept { count_ = 0; }
+
+    [[nodiscard]] std::size_t size() const noexcept { return count_; }
+    /// @param back 0 is the newest; back < size()
+    [[nodiscard]] const MotionSample& at(std::size_t back) const noexcept {
+        return samples_[(newest_ + kCapacity - back) % kCapacity];
+    }
+    [[nodiscard]] const MotionSample& newest() const noexcept { return at(0); }
+
+    /// Line fit of the palm over `window` that ends `back` samples ago; mm/s. At a frame rate where
+    /// the window holds one sample, the one before it is taken too. Zero with a single sample.
+    [[nodiscard]] Vec3f velocity(Duration window, std::size_t back = 0) const noexcept;
+
+    /// How many samples are not older than `age` (counted from the newest).
+    [[nodiscard]] std::size_t count_within(Duration age) const noexcept;
+
+ private:
+    std::array<MotionSample, kCapacity> samples_{};
+    std::size_t newest_ = 0;
+    std::size_t count_ = 0;
+};
+
+}  // namespace xtrack::recognise

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+//         opened          closed             held (begin)
+//   away ───────▶ armed ─────────▶ touching ─────────────▶ pinched ⟲ (update)
+//    ▲   ◀───────  ▲  ◀──────────    │                        │
+//    │    stale    │    released     │ spoilt                 │ released, finished (end)
+//    │             │ opened          ▼                        │ dropped (cancel)
+//    │             └───────────── spoilt                      │
+//    └────────────────────────────────────────────────────────┘
+//
+// Armed means that the fingers were seen apart a moment ago; without that approach a hand that is
+// merely held closed would pinch. Spoilt is a closing that was something else: a fist, a number,
+// a hand that never came to rest.
+#include "gestures/recognise/pinch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace xtrack::recognise {
+
+namespace {
+
+// The aperture is averaged over it: one sample at 20 fps, five at 120 fps, so that noise falls
+// where frames are plenty and nothing is late where they are few.
+constexpr Duration kApertureWindow = std::chrono::milliseconds{40};
+// The hand before the fingers close, for comparison with the hand while they touch.
+constexpr Duration kPoseWindow = std::chrono::milliseconds{300};
+// An aperture that is not known for so long is a finger that is lost.
+constexpr Duration kApertureLost = std::chrono::milliseconds{120};
+constexpr double kCapShare = 1.25;  // of pinch_close_mm: a hand length may be measured badly
+
+double aperture_of(const MotionHistory& history) {
+    double sum = 0.0;
+    int n = 0;
+    const std::size_t recent = history.count_within(kApertureWindow);
+    for (std::size_t i = 0; i < recent; ++i) {
+        if (history.at(i).aperture_mm >= 0.0F) {
+            sum += static_cast<double>(history.at(i).aperture_mm);
+            ++n;
+        }
+    }
+    return n > 0 ? sum / n : -1.0;
+}
+
+double close_mm(const Context& c) {
+    const double by_hand_mm =
+        c.settings.pinch_close_share * static_cast<double>(c.history.newest().hand_length_mm);
+    return std::clamp(by_hand_mm, c.settings.pinch_close_mm, kCapShare * c.settings.pinch_close_mm);
+}
+
+}  // namespace
+
+const char* PinchMachine::name(State s) {
+    switch (s) {
+        case State::away: return "away";
+        case State::armed: return "armed";
+        case State::touching: return "touching";
+        case State::pinched: return "pinched";
+        case State::spoilt: return "spoilt";
+    }
+    return "?";
+}
+
+const char* PinchMachine::name(Event e) {
+    switch (e) {
+        case Event::opened: return "opened";
+        case Event::between: return "between";
+        case Event::stale: return "stale";
+        case Event::closed: return "closed";
+        case Event::held: return "held";
+        case Event::spoilt: return "spoilt";
+        case Event::released: return "released";
+        case Event::dropped: return "dropped";
+        case Event::finished: return "finished";
+    }
+    return "?";
+}
+
+void PinchMachine::update(const Context& c) {
+    const Stamp now = c.history.newest().stamp;
+    if (c.gate == Gate::border) {
+        drop(c, CancelReason::edge);
+        return;
+    }
+    if (c.taken) {
+        drop(c, CancelReason::superseded);
+        return;
+    }
+    const double aperture_mm = aperture_of(c.history);
+    if (aperture_mm < 0.0) {
+        if (now - aperture_at_ >= kApertureLost) {
+            drop(c, CancelReason::lost);
+        }
+        return;  // frozen, like a hand that is not seen
+    }
+    aperture_at_ = now;
+    Refusal refusal;
+    const Event event = judge(c, aperture_mm, refusal);
+    handle(c, event, refusal);
+    if (event == Event::closed && state_ == State::touching) {
+        refusal = {};
+        handle(c, judge(c, aperture_mm, refusal), refusal);  // pinch_hold_ms may be 0
+    }
+}
+
+void PinchMachine::drop(const Context& c, CancelReason reason) {
+    if (state_ != State::away) {
+        handle(c, Event::dropped, {}, reason);
+    }
+}
+
+void PinchMachine::finish(const Context& c) {
+    if (state_ == State::pinched) {
+        handle(c, Event::finished);
+    }
+}
+
+void PinchMachine::handle(const Context& c, Event event, const Refusal& refusal,
+                          CancelReason reason) {
+    const State before = state_;
+    bool possible = true;
+    switch (state_) {
+        case State::away: state_ = away(c, event, possible); break;
+        case State::armed: state_ = armed(c, event, possible); break;
+        case State::touching: state_ = touching(c, event, possible); break;
+        case State::pinched: state_ = pinched(c, event, reason, possible); break;
+        case State::spoilt: state_ = spoilt(c, event, possible); break;
+    }
+    const bool news = refusal.why != last_refusal_.why && *refusal.why != '\0';
+    if (before != state_ || !possible || news) {
+        c.log.write({c.sensor, c.hand.id, "pinch", name(before), name(event), name(state_),
+                     refusal.why, refusal.measured, refusal.limit, !possible});
+    }
+    last_refusal_ = refusal;
+}
+
+PinchMachine::State PinchMachine::away(const Context& c, Event event, bool& possible) {
+    switch (event) {
+        case Event::opened: open_at_ = c.sensor; return State::armed;
+        case Event::between:
+        case Event::closed:
+        case Event::dropped: return State::away;
+        case Event::stale:
+        case Event::held:
+        case Event::spoilt:
+        case Event::released:
+        case Event::finished: break;
+    }
+    possible = false;
+    return State::away;
+}
+
+PinchMachine::State PinchMachine::armed(const Context& c, Event event, bool& possible) {
+    switch (event) {
+        case Event::opened: open_at_ = c.sensor; return State::armed;
+        case Event::between: return State::armed;
+        case Event::stale:
+        case Event::dropped: return State::away;
+        case Event::closed: closed_at_ = c.sensor; return State::touching;
+        case Event::held:
+        case Event::spoilt:
+        case Event::released:
+        case Event::finished: break;
+    }
+    possible = false;
+    return State::armed;
+}
+
+PinchMachine::State PinchMachine::touching(const Context& c, Event event, bool& possible) {
+    switch (event) {
+        case Event::closed: return State::touching;
+        case Event::held:
+            onset_ = open_at_;
+            gesture_id_ = c.next_gesture_id++;
+            send(c, EventPhase::begin);
+            return State::pinched;
+        case Event::spoilt: return State::spoilt;
+        case Event::released: return State::armed;
+        case Event::dropped: return State::away;
+        case Event::opened:
+        case Event::between:
+        case Event::stale:
+        case Event::finished: break;
+    }
+    possible = false;
+    return State::touching;
+}
+
+PinchMachine::State PinchMachine::pinched(const Context& c, Event event, CancelReason reason,
+                                          bool& possible) {
+    switch (event) {
+        case Event::closed: send(c, EventPhase::update); return State::pinched;
+        case Event::released:
+        case Event::finished: send(c, EventPhase::end); return State::away;
+        case Event::dropped: send(c, EventPhase::cancel, reason); return State::away;
+        case Event::opened:
+        case Event::between:
+        case Event::stale:
+        case Event::held:
+        case Event::spoilt: break;
+    }
+    possible = false;
+    return State::pinched;
+}
+
+PinchMachine::State PinchMachine::spoilt(const Context& c, Event event, bool& possible) {
+    switch (event) {
+        case Event::opened: open_at_ = c.sensor; return State::armed;
+        case Event::between:
+        case Event::closed: return State::spoilt;
+        case Event::dropped: return State::away;
+        case Event::stale:
+        case Event::held:
+        case Event::spoilt:
+        case Event::released:
+        case Event::finished: break;
+    }
+    possible = false;
+    return State::spoilt;
+}
+
+PinchMachine::Event PinchMachine::judge(const Context& c, double aperture_mm,
+                                        Refusal& refusal) const {
+    const GestureSettings& s = c.settings;
+    const bool together = state_ == State::touching || state_ == State::pinched;
+    if (together) {
+        if (aperture_mm >= s.pinch_release_mm) {
+            return Event::released;
+        }
+        if (state_ == State::pinched) {
+            return Event::closed;
+        }
+        refusal = spoiler(c);
+        if (*refusal.why != '\0') {
+            return Event::spoilt;
+        }
+        const double held_ms = to_ms(c.sensor - closed_at_);
+        if (held_ms < s.pinch_hold_ms) {
+            return Event::closed;
+        }
+        if (c.gate == Gate::entering) {
+            refusal = {"the hand enters", 0.0, 0.0};
+            return Event::closed;
+        }
+        const double palm_mmps =
+            static_cast<double>(c.history.velocity(from_ms(s.velocity_window_ms)).norm());
+        if (palm_mmps > s.pinch_palm_mmps) {
+            refusal = {"the palm moves", palm_mmps, s.pinch_palm_mmps};
+            return Event::closed;
+        }
+        return Event::held;
+    }
+    if (aperture_mm >= s.pinch_open_mm) {
+        return Event::opened;
+    }
+    if (state_ == State::armed && to_ms(c.sensor - open_at_) > s.pinch_approach_ms) {
+        refusal = {"no approach", to_ms(c.sensor - open_at_), s.pinch_approach_ms};
+        return Event::stale;
+    }
+    return aperture_mm <= close_mm(c) ? Event::closed : Event::between;
+}
+
+Refusal PinchMachine::spoiler(const Context& c) const {
+    const GestureSettings& s = c.settings;
+    const MotionSample& now = c.history.newest();
+    for (const Finger finger : {Finger::middle, Finger::ring, Finger::little}) {
+        const auto f = static_cast<std::size_t>(finger);
+        double before = 0.0;
+        int n = 0;
+        for (std::size_t i = 0; i < c.history.size(); ++i) {
+            const MotionSample& past = c.history.at(i);
+            if (past.stamp > open_at_) {
+                continue;
+            }
+            if (open_at_ - past.stamp > kPoseWindow) {
+                break;
+            }
+            if (past.extension[f] >= 0.0F) {
+                before += static_cast<double>(past.extension[f]);
+                ++n;
+            }
+        }
+        if (n == 0 || now.extension[f] < 0.0F) {
+            continue;
+        }
+        const double folded = before / n - static_cast<double>(now.extension[f]);
+        if (folded > s.pinch_others_fold) {
+            return {"another finger folds with it", folded, s.pinch_others_fold};
+        }
+    }
+    return {};
+}
+
+void PinchMachine::send(const Context& c, EventPhase phase, CancelReason reason) {
+    GestureEvent e = event_of(c, GestureType::pinch, phase);
+    e.gesture_id = gesture_id_;
+    e.cancel_reason = reason;
+    e.onset = onset_;
+    const TrackedPoint& thumb = c.hand.fingertip(Finger::thumb);
+    const TrackedPoint& index = c.hand.fingertip(Finger::index);
+    if (thumb.valid && index.valid && thumb.position_mm.allFinite() &&
+        index.position_mm.allFinite()) {
+        e.position_mm = 0.5F * (thumb.position_mm + index.position_mm);
+    }
+    e.value = std::clamp(c.hand.pinch_value, 0.0F, 1.0F);
+    e.progress = 1.0F;
+    c.out.add(e);
+}
+
+}  // namespace xtrack::recognise

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "gestures/recognise/context.hpp"
+
+namespace xtrack::recognise {
+
+/// One pinch machine a hand. The diagram is in docs/gestures/pinch.md and in pinch.cpp.
+class PinchMachine {
+ public:
+    /// A new sample is in the history.
+    void update(const Context& c);
+    /// The hand was lost, came to the border, or was taken: an active pinch is cancelled.
+    void drop(const Context& c, CancelReason reason);
+    /// The stream is over: an active pinch ends.
+    void finish(const Context& c);
+
+    [[nodiscard]] bool active() const noexcept { return state_ == State::pinched; }
+
+ private:
+    enum class State { away, armed, touching, pinched, spoilt };
+    enum class Event { opened, between, stale, closed, held, spoilt, released, dropped, finished };
+
+    static const char* name(State s);
+    static const char* name(Event e);
+
+    void handle(const Context& c, Event event, const Refusal& refusal = {},
+                CancelReason reason = CancelReason::none);
+    State away(const Context& c, Event event, bool& possible);
+    State armed(const Context& c, Event event, bool& possible);
+    State touching(const Context& c, Event event, bool& possible);
+    State pinched(const Context& c, Event event, CancelReason reason, bool& possible);
+    State spoilt(const Context& c, Event event, bool& possible);
+
+    [[nodiscard]] Event judge(const Context& c, double aperture_mm, Refusal& refusal) const;
+    [[nodiscard]] Refusal spoiler(const Context& c) const;
+    void send(const Context& c, EventPhase phase, CancelReason reason = CancelReason::none);
+
+    State state_ = State::away;
+    Refusal last_refusal_;
+    Stamp open_at_;      ///< newest sample with the fingers apart, while armed or touching
+    Stamp closed_at_;    ///< first sample with the fingers together
+    Stamp onset_;        ///< of the pinch that is active
+    Stamp aperture_at_;  ///< newest sample with a known aperture
+    int gesture_id_ = -1;
+};
+
+}  // namespace xtrack::recognise

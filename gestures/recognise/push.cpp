@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+//            thrust (begin and end are sent)
+//  waiting ─────────────────────────────────▶ recovering
+//     ▲                                           │ stable, dropped
+//     └───────────────────────────────────────────┘
+//
+// A thrust is judged over a whole window, so there is no candidate state: before the window is full
+// of it, nothing is known. Recovering is the way back, until the hand has been still.
+#include "gestures/recognise/push.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace xtrack::recognise {
+
+namespace {
+
+constexpr float kConfidenceFloor = 0.5F;
+// The window holds whole frames only; this much of it must be covered.
+constexpr double kCoverShare = 0.75;
+
+double angle_deg(const Vec3f& a, const Vec3f& b) {
+    const double norms = static_cast<double>(a.norm()) * static_cast<double>(b.norm());
+    if (norms <= 0.0) {
+        return 0.0;
+    }
+    const double cosine = std::clamp(static_cast<double>(a.dot(b)) / norms, -1.0, 1.0);
+    return std::acos(cosine) * 180.0 / std::numbers::pi;
+}
+
+}  // namespace
+
+const char* PushMachine::name(State s) {
+    switch (s) {
+        case State::waiting: return "waiting";
+        case State::recovering: return "recovering";
+    }
+    return "?";
+}
+
+const char* PushMachine::name(Event e) {
+    switch (e) {
+        case Event::thrust: return "thrust";
+        case Event::moving: return "moving";
+        case Event::stable: return "stable";
+        case Event::dropped: return "dropped";
+    }
+    return "?";
+}
+
+void PushMachine::update(const Context& c) {
+    const Stamp now = c.history.newest().stamp;
+    const Vec3f velocity = c.history.velocity(from_ms(c.settings.velocity_window_ms));
+    const bool slow = static_cast<double>(velocity.norm()) < c.settings.push_stable_mmps;
+    if (slow && !slow_) {
+        stable_since_ = now;
+    }
+    slow_ = slow;
+    if (state_ == State::recovering) {
+        const bool stable = slow_ && to_ms(now - stable_since_) >= c.settings.push_stable_ms;
+        handle(c, stable ? Event::stable : Event::moving);
+        return;
+    }
+    if (c.gate != Gate::open || c.taken) {
+        not_before_ = now;
+        return;
+    }
+    thrust_ = measure(c);
+    handle(c, *thrust_.why_not == '\0' ? Event::thrust : Event::moving, thrust_.why_not,
+           thrust_.measured, thrust_.limit);
+}
+
+void PushMachine::drop(const Context& c, const char* why) {
+    not_before_ = c.sensor;
+    if (state_ != State::waiting) {
+        handle(c, Event::dropped, why);
+    }
+}
+
+void PushMachine::handle(const Context& c, Event event, const char* why, double measured,
+                         double limit) {
+    const State before = state_;
+    bool possible = true;
+    switch (state_) {
+        case State::waiting: state_ = waiting(c, event, possible); break;
+        case State::recovering: state_ = recovering(c, event, possible); break;
+    }
+    if (before != state_ || !possible || (why != last_why_ && *why != '\0')) {
+        c.log.write({c.sensor, c.hand.id, "push", name(before), name(event), name(state_), why,
+                     measured, limit, !possible});
+    }
+    last_why_ = why;
+}
+
+PushMachine::State PushMachine::waiting(const Context& c, Event event, bool& possible) {
+    switch (event) {
+        case Event::thrust: commit(c); return State::recovering;
+        case Event::moving:
+        case Event::dropped: return State::waiting;
+        case Event::stable: break;
+    }
+    possible = false;
+    return State::waiting;
+}
+
+PushMachine::State PushMachine::recovering(const Context& /*c*/, Event event, bool& possible) {
+    switch (event) {
+        case Event::moving: return State::recovering;
+        case Event::stable:
+        case Event::dropped: return State::waiting;
+        case Event::thrust: break;
+    }
+    possible = false;
+    return State::recovering;
+}
+
+PushMachine::Thrust PushMachine::measure(const Context& c) const {
+    const GestureSettings& s = c.settings;
+    const MotionSample& now = c.history.newest();
+    std::size_t first = c.history.count_within(from_ms(s.push_window_ms));
+    first -= first > 0 ? 1 : 0;
+    const MotionSample& then = c.history.at(first);
+    const double lasted_ms = to_ms(now.stamp - then.stamp);
+    Thrust t;
+    t.start = then.stamp;
+    if (then.stamp < not_before_ || lasted_ms < kCoverShare * s.push_window_ms) {
+        t.why_not = "seen too short";
+        t.measured = lasted_ms;
+        t.limit = s.push_window_ms;
+        return t;
+    }
+    const Vec3f moved = now.palm_mm - then.palm_mm;
+    const Vec3f toward_screen{0.0F, 0.0F, -1.0F};
+    t.speed_mmps = static_cast<double>(moved.dot(toward_screen)) / (lasted_ms * 1e-3);
+    if (t.speed_mmps < s.push_speed_mmps) {
+        t.why_not = "slow";
+        t.measured = t.speed_mmps;
+        t.limit = s.push_speed_mmps;
+        return t;
+    }
+    const double off_deg = angle_deg(moved, toward_screen);
+    if (off_deg > s.push_cone_deg) {
+        t.why_not = "off the normal";
+        t.measured = off_deg;
+        t.limit = s.push_cone_deg;
+        return t;
+    }
+    const Vec3f before = c.history.velocity(from_ms(s.velocity_window_ms), first);
+    const double turned_deg = angle_deg(before, moved);
+    if (static_cast<double>(before.norm()) > s.push_stable_mmps && turned_deg < s.push_turn_deg) {
+        t.why_not = "goes on with the motion before";
+        t.measured = turned_deg;
+        t.limit = s.push_turn_deg;
+        return t;
+    }
+    if (now.facing.norm() > 0.0F) {
+        const float toward = -now.facing.z();
+        const double faces = static_cast<double>(now.facing_signed ? toward : std::abs(toward));
+        if (faces < s.push_facing) {
+            t.why_not = "the palm does not face the screen";
+            t.measured = faces;
+            t.limit = s.push_facing;
+        }
+    }
+    return t;
+}
+
+void PushMachine::commit(const Context& c) {
+    slow_ = false;
+    GestureEvent e = event_of(c, GestureType::push, EventPhase::begin);
+    e.gesture_id = c.next_gesture_id++;
+    e.onset = thrust_.start;
+    e.progress = 1.0F;
+    e.value = static_cast<float>(thrust_.speed_mmps);
+    const double sure = thrust_.speed_mmps / (2.0 * c.settings.push_speed_mmps);
+    e.confidence *= std::clamp(static_cast<float>(sure), kConfidenceFloor, 1.0F);
+    c.out.add(e);
+    e.phase = EventPhase::end;
+    c.out.add(e);
+}
+
+}  // namespace xtrack::recognise

@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+//            fast                 far_enough (begin and end are sent)
+//  waiting ────────▶ stroking ─────────────────────────────▶ coasting
+//   ▲  ▲                │ slow, astray, dropped                 │ slow, dropped
+//   │  └────────────────┘ (silent: the why-not trace says)      │
+//   └───────────────────────────────────────────────────────────┘
+//
+// A stroke begins when the hand moves along one of the four directions, and is judged by what it
+// has done since. Coasting is the rest of a stroke that has committed.
+#include "gestures/recognise/swipe.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace xtrack::recognise {
+
+namespace {
+
+// The line fit lags by half its window, so the stroke began before it was noticed; looking further
+// back than this would take in the approach.
+constexpr Duration kLookBack = std::chrono::milliseconds{150};
+constexpr float kLookBackShare = 0.5F;  // of swipe_dies_mmps: still part of the stroke
+// A stroke that is this much faster than the one it undoes was the swipe, the first its wind-up.
+constexpr float kWindUpShare = 1.2F;
+constexpr double kShownFacing = 0.7;  // palm toward the screen, 45 degrees
+constexpr float kConfidenceFloor = 0.5F;
+
+double degrees(double rad) { return rad * 180.0 / std::numbers::pi; }
+
+Vec3f axis_of(Direction d) {
+    switch (d) {
+        case Direction::left: return {-1.0F, 0.0F, 0.0F};
+        case Direction::right: return {1.0F, 0.0F, 0.0F};
+        case Direction::up: return {0.0F, 1.0F, 0.0F};
+        case Direction::down: return {0.0F, -1.0F, 0.0F};
+        case Direction::none: break;
+    }
+    return Vec3f::Zero();
+}
+
+bool horizontal(Direction d) { return d == Direction::left || d == Direction::right; }
+
+bool opposite(Direction a, Direction b) {
+    return a != Direction::none && b != Direction::none && a != b && horizontal(a) == horizontal(b);
+}
+
+/// Angle to the axis in the x-y plane, degrees.
+double off_axis_deg(const Vec3f& v, Direction d) {
+    const Vec3f axis = axis_of(d);
+    const float along = v.dot(axis);
+    const float across = horizontal(d) ? v.y() : v.x();
+    return degrees(std::atan2(std::abs(static_cast<double>(across)), static_cast<double>(along)));
+}
+
+double out_of_plane_deg(const Vec3f& v) {
+    return degrees(std::atan2(std::abs(static_cast<double>(v.z())),
+                              std::hypot(static_cast<double>(v.x()), static_cast<double>(v.y()))));
+}
+
+double cone_deg(const GestureSettings& s, Direction d) {
+    return horizontal(d) ? s.swipe_horizontal_deg : s.swipe_vertical_deg;
+}
+
+Direction direction_of(const GestureSettings& s, const Vec3f& v) {
+    for (const Direction d : {Direction::left, Direction::right, Direction::up, Direction::down}) {
+        if (v.dot(axis_of(d)) > 0.0F && off_axis_deg(v, d) <= cone_deg(s, d)) {
+            return d;
+        }
+    }
+    return Direction::none;
+}
+
+}  // namespace
+
+const char* SwipeMachine::name(State s) {
+    switch (s) {
+        case State::waiting: return "waiting";
+        case State::stroking: return "stroking";
+        case State::coasting: return "coasting";
+    }
+    return "?";
+}
+
+const char* SwipeMachine::name(Event e) {
+    switch (e) {
+        case Event::fast: return "fast";
+        case Event::slow: return "slow";
+        case Event::astray: return "astray";
+        case Event::far_enough: return "far_enough";
+        case Event::moving: return "moving";
+        case Event::dropped: return "dropped";
+    }
+    return "?";
+}
+
+void SwipeMachine::update(const Context& c) {
+    const Vec3f velocity = c.history.velocity(from_ms(c.settings.velocity_window_ms));
+    note_rest(c, velocity);
+    if (c.gate != Gate::open || c.taken) {
+        drop(c, c.taken                    ? "another gesture has the hand"
+                : c.gate == Gate::entering ? "the hand enters"
+                                           : "the hand touches the border");
+        return;
+    }
+    Refusal refusal;
+    const State before = state_;
+    handle(c, judge(c, velocity, refusal), refusal);
+    if (before == State::waiting && state_ == State::stroking) {
+        // A slow camera may see the whole stroke at once.
+        refusal = {};
+        handle(c, judge(c, velocity, refusal), refusal);
+    }
+}
+
+void SwipeMachine::drop(const Context& c, const char* why) {
+    drop_until_ = c.sensor;
+    if (state_ != State::waiting) {
+        handle(c, Event::dropped, {why, 0.0, 0.0});
+    }
+}
+
+void SwipeMachine::handle(const Context& c, Event event, const Refusal& refusal) {
+    const State before = state_;
+    bool possible = true;
+    switch (state_) {
+        case State::waiting: state_ = waiting(c, event, possible); break;
+        case State::stroking: state_ = stroking(c, event, possible); break;
+        case State::coasting: state_ = coasting(c, event, possible); break;
+    }
+    const bool news = refusal.why != last_refusal_.why && *refusal.why != '\0';
+    if (before != state_ || !possible || news) {
+        c.log.write({c.sensor, c.hand.id, "swipe", name(before), name(event), name(state_),
+                     refusal.why, refusal.measured, refusal.limit, !possible});
+    }
+    last_refusal_ = refusal;
+}
+
+SwipeMachine::State SwipeMachine::waiting(const Context& c, Event event, bool& possible) {
+    switch (event) {
+        case Event::fast: begin_stroke(c, wanted_); return State::stroking;
+        case Event::slow:
+        case Event::dropped: return State::waiting;
+        case Event::astray:
+        case Event::far_enough:
+        case Event::moving: break;
+    }
+    possible = false;
+    return State::waiting;
+}
+
+SwipeMachine::State SwipeMachine::stroking(const Context& c, Event event, bool& possible) {
+    switch (event) {
+        case Event::far_enough: commit(c); return State::coasting;
+        case Event::slow:
+        case Event::astray:
+        case Event::dropped: return State::waiting;
+        case Event::moving: return State::stroking;
+        case Event::fast: break;
+    }
+    possible = false;
+    return State::stroking;
+}
+
+SwipeMachine::State SwipeMachine::coasting(const Context& /*c*/, Event event, bool& possible) {
+    switch (event) {
+        case Event::moving: return State::coasting;
+        case Event::slow:
+        case Event::dropped: return State::waiting;
+        case Event::fast:
+        case Event::astray:
+        case Event::far_enough: break;
+    }
+    possible = false;
+    return State::coasting;
+}
+
+SwipeMachine::Event SwipeMachine::judge(const Context& c, const Vec3f& velocity, Refusal& refusal) {
+    const GestureSettings& s = c.settings;
+    if (state_ == State::waiting) {
+        wanted_ = direction_of(s, velocity);
+        const double along_mmps = static_cast<double>(velocity.dot(axis_of(wanted_)));
+        return along_mmps >= s.swipe_dies_mmps ? Event::fast : Event::slow;
+    }
+    const Vec3f axis = axis_of(stroke_.direction);
+    const float along_mmps = velocity.dot(axis);
+    stroke_.peak_mmps = std::max(stroke_.peak_mmps, along_mmps);
+    if (state_ == State::coasting) {
+        last_peak_mmps_ = std::max(last_peak_mmps_, along_mmps);
+    }
+    if (static_cast<double>(along_mmps) < s.swipe_dies_mmps) {
+        refusal = {"too slow", static_cast<double>(along_mmps), s.swipe_dies_mmps};
+        return Event::slow;
+    }
+    if (state_ == State::coasting) {
+        return Event::moving;
+    }
+    const MotionSample& now = c.history.newest();
+    const Vec3f moved = now.palm_mm - stroke_.palm_mm;
+    const double length_mm = static_cast<double>(moved.dot(axis));
+    const double across_mm =
+        std::abs(static_cast<double>(horizontal(stroke_.direction) ? moved.y() : moved.x()));
+    const double allowed_mm =
+        s.swipe_sideways_mm + s.swipe_sideways_share * std::max(length_mm, 0.0);
+    if (across_mm > allowed_mm) {
+        refusal = {"sideways", across_mm, allowed_mm};
+        return Event::astray;
+    }
+    const double lasted_s = to_seconds(now.stamp - stroke_.start);
+    stroke_.length_mm = length_mm;
+    stroke_.speed_mmps = lasted_s > 0.0 ? length_mm / lasted_s : 0.0;
+    if (length_mm < s.swipe_length_mm) {
+        return Event::moving;
+    }
+    refusal = objection(c);
+    return *refusal.why == '\0' ? Event::far_enough : Event::moving;
+}
+
+Refusal SwipeMachine::objection(const Context& c) const {
+    const GestureSettings& s = c.settings;
+    const MotionSample& now = c.history.newest();
+    const Vec3f axis = axis_of(stroke_.direction);
+    const Vec3f moved = now.palm_mm - stroke_.palm_mm;
+    const double off_deg = off_axis_deg(moved, stroke_.direction);
+    if (off_deg > cone_deg(s, stroke_.direction)) {
+        return {"slanting", off_deg, cone_deg(s, stroke_.direction)};
+    }
+    if (out_of_plane_deg(moved) > s.swipe_depth_deg) {
+        return {"toward or away from the screen", out_of_plane_deg(moved), s.swipe_depth_deg};
+    }
+    if (now.index_tip_known && stroke_.tip_known) {
+        const double tip_mm = static_cast<double>((now.index_tip_mm - stroke_.tip_mm).dot(axis));
+        if (tip_mm < s.swipe_tip_share * stroke_.length_mm) {
+            return {"the index tip stays behind", tip_mm, s.swipe_tip_share * stroke_.length_mm};
+        }
+    }
+
+    // How the hand was held, on average over the stroke.
+    Vec3f facing = Vec3f::Zero();
+    double outer = 0.0;
+    int outer_known = 0;
+    const std::size_t samples = c.history.count_within(now.stamp - stroke_.start);
+    for (std::size_t i = 0; i < samples; ++i) {
+        const MotionSample& sample = c.history.at(i);
+        facing += sample.facing;
+        const float extension = sample.outer_extension();
+        if (extension >= 0.0F) {
+            outer += static_cast<double>(extension);
+            ++outer_known;
+        }
+    }
+    const bool facing_known = facing.norm() > 0.0F;
+    if (facing_known) {
+        facing.normalize();
+    }
+    double leads = static_cast<double>(facing.dot(axis));
+    double shown = static_cast<double>(-facing.z());
+    if (!now.facing_signed) {
+        leads = std::abs(leads);
+        shown = std::abs(shown);
+    }
+    const bool points = outer_known > 0 && outer / outer_known < s.swipe_pointing_extension;
+    // A hand that drops does so with the palm down, so that leading says nothing there.
+    const bool paddle = leads >= s.swipe_facing && stroke_.direction != Direction::down;
+    const bool intended = !points && (!facing_known || paddle || shown >= kShownFacing);
+    const double least_mm = intended ? s.swipe_length_mm : s.swipe_carried_length_mm;
+    const double least_mmps = intended ? s.swipe_speed_mmps : s.swipe_carried_speed_mmps;
+    if (stroke_.length_mm < least_mm) {
+        return {points ? "short for a pointing hand" : "short for a carried hand",
+                stroke_.length_mm, least_mm};
+    }
+    if (stroke_.speed_mmps < least_mmps) {
+        return {points     ? "slow for a pointing hand"
+                : intended ? "slow"
+                           : "slow for a carried hand",
+                stroke_.speed_mmps, least_mmps};
+    }
+
+    if (committed_before_ && opposite(stroke_.direction, last_.direction)) {
+        const double ratio = static_cast<double>(stroke_.peak_mmps / last_peak_mmps_);
+        const double since_ms = to_ms(stroke_.start - committed_at_);
+        const bool barred = since_ms < s.swipe_return_bar_ms || !rested_since_;
+        if (barred && ratio < static_cast<double>(kWindUpShare)) {
+            return {"return stroke", since_ms, s.swipe_return_bar_ms};
+        }
+        if (since_ms < s.swipe_return_memory_ms && ratio < s.swipe_return_share) {
+            return {"slow return stroke", ratio, s.swipe_return_share};
+        }
+    }
+    return {};
+}
+
+void SwipeMachine::begin_stroke(const Context& c, Direction direction) {
+    const GestureSettings& s = c.settings;
+    const Vec3f axis = axis_of(direction);
+    const float least_mmps = kLookBackShare * static_cast<float>(s.swipe_dies_mmps);
+    const Stamp now = c.history.newest().stamp;
+    std::size_t start = 0;
+    while (start + 1 < c.history.size()) {
+        const MotionSample& later = c.history.at(start);
+        const MotionSample& earlier = c.history.at(start + 1);
+        const Vec3f step = later.palm_mm - earlier.palm_mm;
+        const float along = step.dot(axis);
+        const float dt_s = static_cast<float>(to_seconds(later.stamp - earlier.stamp));
+        // Single steps are noisier than the fit; the cone is widened for them.
+        if (now - earlier.stamp > kLookBack || earlier.stamp < drop_until_ ||
+            along < least_mmps * dt_s || off_axis_deg(step, direction) > 45.0) {
+            break;
+        }
+        ++start;
+    }
+    const MotionSample& first = c.history.at(start);
+    stroke_ = {};
+    stroke_.direction = direction;
+    stroke_.start = first.stamp;
+    stroke_.palm_mm = first.palm_mm;
+    stroke_.tip_mm = first.index_tip_mm;
+    stroke_.tip_known = first.index_tip_known;
+}
+
+void SwipeMachine::commit(const Context& c) {
+    committed_before_ = true;
+    committed_at_ = c.sensor;
+    last_ = stroke_;
+    last_peak_mmps_ = stroke_.peak_mmps;
+    rested_since_ = false;
+
+    GestureEvent e = event_of(c, GestureType::swipe, EventPhase::begin);
+    e.direction = stroke_.direction;
+    e.gesture_id = c.next_gesture_id++;
+    e.onset = stroke_.start;
+    e.progress = 1.0F;
+    e.value = static_cast<float>(stroke_.speed_mmps);
+    // Twice the speed that is asked for leaves no doubt.
+    const double sure = stroke_.speed_mmps / (2.0 * c.settings.swipe_speed_mmps);
+    e.confidence *= std::clamp(static_cast<float>(sure), kConfidenceFloor, 1.0F);
+    c.out.add(e);
+    e.phase = EventPhase::end;
+    c.out.add(e);
+}
+
+void SwipeMachine::note_rest(const Context& c, const Vec3f& velocity) {
+    if (static_cast<double>(velocity.norm()) < c.settings.swipe_rest_mmps) {
+        rested_since_ = true;
+    }
+}
+
+}  // namespace xtrack::recognise

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "gestures/recognise/context.hpp"
+
+namespace xtrack::recognise {
+
+/// One swipe machine a hand. The diagram is in docs/gestures/swipe.md and in swipe.cpp.
+class SwipeMachine {
+ public:
+    /// A new sample is in the history.
+    void update(const Context& c);
+    /// The hand was lost, came to the border, or another gesture took it: the candidate dies.
+    void drop(const Context& c, const char* why);
+
+ private:
+    enum class State { waiting, stroking, coasting };
+    enum class Event { fast, slow, astray, far_enough, moving, dropped };
+
+    struct Stroke {
+        Direction direction = Direction::none;
+        Stamp start;
+        Vec3f palm_mm = Vec3f::Zero();
+        Vec3f tip_mm = Vec3f::Zero();
+        bool tip_known = false;
+        float peak_mmps = 0.0F;
+        double speed_mmps = 0.0;  ///< mean, as far as it has come
+        double length_mm = 0.0;
+    };
+    static const char* name(State s);
+    static const char* name(Event e);
+
+    void handle(const Context& c, Event event, const Refusal& refusal = {});
+    State waiting(const Context& c, Event event, bool& possible);
+    State stroking(const Context& c, Event event, bool& possible);
+    State coasting(const Context& c, Event event, bool& possible);
+
+    [[nodiscard]] Event judge(const Context& c, const Vec3f& velocity, Refusal& refusal);
+    [[nodiscard]] Refusal objection(const Context& c) const;
+    void begin_stroke(const Context& c, Direction direction);
+    void commit(const Context& c);
+    void note_rest(const Context& c, const Vec3f& velocity);
+
+    State state_ = State::waiting;
+    Stroke stroke_;
+    Direction wanted_ = Direction::none;  ///< of the event `fast`
+    Refusal last_refusal_;
+
+    bool committed_before_ = false;
+    bool rested_since_ = true;  ///< slower than swipe_rest_mmps since the last commit
+    Stroke last_;               ///< the one that committed
+    Stamp committed_at_;
+    float last_peak_mmps_ = 0.0F;
+    Stamp drop_until_;  ///< samples before it are not looked at: the hand was gated
+};
+
+}  // namespace xtrack::recognise
