@@ -11,7 +11,8 @@ namespace xtrack {
 struct PhaseMap {
     Stamp stamp;
     double period_px = 0.0;   ///< projector pixels along the coded axis
-    Image<float> phase_rad;   ///< in (-pi, pi]; 0 at the projector's first pixel of each period
+    Image<float> phase_rad;   ///< in (-pi, pi]; 0 at the projector's first pixel of each period;
+                              ///< NaN where masked
     Image<float> modulation;  ///< amplitude B of the fringe, grey levels; 0 where masked
 };
 

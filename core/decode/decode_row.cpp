@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/decode/decode_row.hpp"
+
+#if XTRACK_WITH_HIGHWAY
+#include <hwy/targets.h>
+#endif
+
+namespace xtrack {
+
+#if XTRACK_WITH_HIGHWAY
+
+void decode_row(const DecodeRow& row) noexcept { decode_row_highway(row); }
+
+const char* decode_instruction_set() noexcept {
+    // The lowest set bit is the best target this CPU supports.
+    const auto supported = hwy::SupportedTargets();
+    return hwy::TargetName(supported & -supported);
+}
+
+#else
+
+void decode_row(const DecodeRow& row) noexcept { decode_row_scalar(row); }
+const char* decode_instruction_set() noexcept { return "scalar"; }
+
+#endif
+
+}  // namespace xtrack

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/decode/arctangent.hpp"
+#include "core/decode/decode_row.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/decode/decode_row_highway.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <limits>
+#include <numbers>
+
+HWY_BEFORE_NAMESPACE();
+namespace xtrack::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using D = hn::ScalableTag<float>;
+using V = hn::Vec<D>;
+
+HWY_INLINE V arctangent2(D d, V y, V x) {
+    const V ax = hn::Abs(x);
+    const V ay = hn::Abs(y);
+    // A tiny divisor keeps 0 / 0 from becoming NaN: black pixels have phase 0 before the mask.
+    const V larger = hn::Max(hn::Max(ax, ay), hn::Set(d, std::numeric_limits<float>::min()));
+    const V t = hn::Div(hn::Min(ax, ay), larger);
+    const V t2 = hn::Mul(t, t);
+    V p = hn::Set(d, kArctangent[5]);
+    for (std::size_t k = 5; k-- > 0;) {
+        p = hn::MulAdd(p, t2, hn::Set(d, kArctangent[k]));
+    }
+    V angle = hn::Mul(p, t);
+    angle = hn::IfThenElse(hn::Gt(ay, ax),
+                           hn::Sub(hn::Set(d, std::numbers::pi_v<float> / 2.0F), angle), angle);
+    angle = hn::IfThenElse(hn::Lt(x, hn::Zero(d)),
+                           hn::Sub(hn::Set(d, std::numbers::pi_v<float>), angle), angle);
+    return hn::IfThenElse(hn::Lt(y, hn::Zero(d)), hn::Neg(angle), angle);
+}
+
+// kTaps > 0 fixes the number of images at compile time, which keeps the coefficients in registers.
+template <int kTaps>
+void decode_pixels(const DecodeRow& row) {
+    const D d;
+    const hn::Rebind<std::uint8_t, D> d8;
+    const hn::RebindToSigned<D> di;
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    const auto taps = static_cast<std::size_t>(kTaps > 0 ? kTaps : row.taps);
+    const V least_power = hn::Set(d, row.min_modulation * row.min_modulation);
+    const V limit = hn::Set(d, static_cast<float>(row.saturation_limit));
+    const V nan = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
+    for (int i = 0; i < row.count; i += lanes) {
+        // The last vector overlaps the one before it instead of running over the end.
+        const int at = i + lanes <= row.count ? i : row.count - lanes;
+        V re = hn::Zero(d);
+        V im = hn::Zero(d);
+        V brightest = hn::Zero(d);
+        for (std::size_t n = 0; n < taps; ++n) {
+            const V value = hn::ConvertTo(d, hn::PromoteTo(di, hn::LoadU(d8, row.source[n] + at)));
+            brightest = hn::Max(brightest, value);
+            re = hn::MulAdd(hn::Set(d, row.re[n]), value, re);
+            im = hn::MulAdd(hn::Set(d, row.im[n]), value, im);
+        }
+        const V power = hn::MulAdd(re, re, hn::Mul(im, im));
+        const auto good = hn::And(hn::Ge(power, least_power), hn::Lt(brightest, limit));
+        hn::StoreU(hn::IfThenElse(good, arctangent2(d, im, re), nan), d, row.phase_rad + at);
+        hn::StoreU(hn::IfThenElseZero(good, hn::Sqrt(power)), d, row.modulation + at);
+    }
+}
+
+void decode(const DecodeRow& row) {
+    if (row.count < static_cast<int>(hn::Lanes(D()))) {
+        decode_row_scalar(row);
+        return;
+    }
+    if (row.taps == 3) {
+        decode_pixels<3>(row);
+    } else if (row.taps == 5) {
+        decode_pixels<5>(row);
+    } else {
+        decode_pixels<0>(row);
+    }
+}
+
+}  // namespace
+}  // namespace xtrack::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace xtrack {
+
+HWY_EXPORT(decode);
+
+void decode_row_highway(const DecodeRow& row) noexcept { HWY_DYNAMIC_DISPATCH(decode)(row); }
+
+}  // namespace xtrack
+#endif

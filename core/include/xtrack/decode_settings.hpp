@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <xtrack/result.hpp>
+
+namespace xtrack {
+
+/// How the images of one period are combined into a phase.
+enum class PhaseTaps {
+    /// three_plus_two where the sequence is one cycle of three equal steps, else least_squares
+    automatic,
+    least_squares,   ///< the newest image of each pattern, any number and phases
+    three_plus_one,  ///< four images of a cycle: linear detuning removed
+    three_plus_two,  ///< five images of a cycle: drift of the background removed as well
+    four_plus_one,   ///< five images of a cycle of four (Hariharan)
+};
+
+/// Where the fringe order comes from.
+enum class OrderSource {
+    automatic,    ///< Gray code, coarser periods, or a period unique in the working volume
+    depth_image,  ///< DepthDecoder::set_order_depth(): a depth known from elsewhere
+    none,         ///< none: phase and modulation only, no depth; the rig is not read
+};
+
+/// Settings of the DepthDecoder. Defaults suit a hand before a projector at 60 images a second.
+/// @since 0.1
+struct DecodeSettings {
+    /// Fringe amplitude B below which a pixel is masked, grey levels, 0 ... 127. Phase noise is
+    /// sigma_I / B, so at 6 levels and 1.5 levels of camera noise it is 0.2 rad.
+    double min_modulation = 6.0;
+    /// Mask pixels that reach 255 in any image of a phase: clipped sines have wrong phases.
+    bool mask_saturated = true;
+    PhaseTaps taps = PhaseTaps::automatic;
+    OrderSource order = OrderSource::automatic;
+    /// Largest distance between a phase's coordinate and the one that gives its order, in shares of
+    /// the period, 0.05 ... 0.5. 0.5 accepts all; less masks pixels whose order is a guess.
+    double order_tolerance = 0.5;
+    /// Share of white - black around its threshold where a Gray code bit is uncertain, 0 ... 0.45.
+    double gray_edge_guard = 0.2;
+    /// Keep phase, modulation, coordinate and average images of each depth; costs memory traffic.
+    bool keep_maps = false;
+};
+
+/// @return invalid_argument that names the first setting out of its documented range
+/// @thread any
+/// @since 0.1
+[[nodiscard]] Result<void> validate(const DecodeSettings& settings);
+
+}  // namespace xtrack

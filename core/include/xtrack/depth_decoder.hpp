@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include <xtrack/decode_settings.hpp>
+#include <xtrack/depth.hpp>
+#include <xtrack/frame.hpp>
+#include <xtrack/pattern.hpp>
+#include <xtrack/phase_map.hpp>
+#include <xtrack/result.hpp>
+#include <xtrack/rig.hpp>
+
+namespace xtrack {
+
+/// What a pushed frame led to.
+enum class DecodeState {
+    need_more,    ///< taken; not every pattern has been seen yet
+    depth_ready,  ///< taken; depth() is new
+    rejected,     ///< not taken; `reason` says why. depth() is as before.
+};
+
+/// Why a frame was not taken.
+enum class RejectReason {
+    none,
+    damaged,               ///< no frame, or its status says so
+    wrong_size,            ///< not the size the decoder was made for
+    unknown_pattern,       ///< nobody knows which pattern it saw
+    pattern_out_of_range,  ///< its pattern index is not in the sequence
+    time_backwards,        ///< its stamp is before that of the frame pushed last
+};
+
+/// One sentence for logs. Static storage.
+[[nodiscard]] const char* describe(RejectReason reason) noexcept;
+
+struct DecodeStatus {
+    DecodeState state = DecodeState::need_more;
+    RejectReason reason = RejectReason::none;
+};
+
+/// Fringe images in, depth images out: decode, unwrap and triangulate, a few rows at a time.
+///
+/// A sliding window: once every pattern has been seen, each further frame gives a depth image from
+/// the newest image of every pattern, wherever in the sequence that is; lost frames are bridged by
+/// older ones. Rows outside a frame's clean rows use the pattern's image before, or are masked.
+/// The depth image's stamp and sequence are those of the centre of the window that gave its phase.
+///
+/// What is used of a sequence: sines by period, from the longest (three or more phases each); a
+/// Gray code with white and black images or inverted bits; other flat patterns are passed over.
+/// Where the projector's gamma is known, the phase error it causes is subtracted: a power of a sine
+/// has harmonics that depend on gamma alone, so the error is a function of the phase, whatever the
+/// skin's shade and the ambient light.
+///
+/// @thread one at a time
+/// @ownership holds the FramePtrs of the window, at most two a pattern; copies no pixels
+/// @since 0.1
+class DepthDecoder {
+ public:
+    /// @param image width and height of the frames that will be pushed, px
+    /// @return unsupported for sequences this decoder has no method for (colour fringes, a period
+    ///         whose order nothing gives); invalid_argument for settings out of range, singular
+    ///         geometry, a rig without projector, a projector size that disagrees with the pattern
+    [[nodiscard]] static Result<DepthDecoder> create(const Rig& rig,
+                                                     const PatternSequence& patterns, Size image,
+                                                     const DecodeSettings& settings);
+
+    DepthDecoder(DepthDecoder&&) noexcept;
+    DepthDecoder& operator=(DepthDecoder&&) noexcept;
+    ~DepthDecoder();
+
+    /// Takes one frame. Equal stamps are allowed. No heap allocation.
+    DecodeStatus push(const FramePtr& frame) noexcept;
+
+    /// The newest depth image; empty before the first depth_ready. Valid until the next push.
+    [[nodiscard]] const DepthFrame& depth() const noexcept;
+
+    /// Gives OrderSource::depth_image its depth: pixels of the same camera, 0 = unknown there.
+    /// @param depth copied; @return invalid_argument on another size or a unit that is not positive
+    Result<void> set_order_depth(ImageView<const std::uint16_t> depth, double unit_mm);
+
+    /// Phase and modulation of the shortest period; empty without DecodeSettings::keep_maps, and
+    /// the phase also for a Gray code without sines. Valid until the next push.
+    [[nodiscard]] const PhaseMap& phase() const noexcept;
+    /// Absolute coordinate along the coded axis, projector px (as shown, lens included), NaN where
+    /// there is none; empty without keep_maps or without an order.
+    [[nodiscard]] const Image<float>& coordinate_px() const noexcept;
+    /// The scene without its fringes: mean of the images of the shortest period (or of white and
+    /// black), grey levels; empty without keep_maps.
+    [[nodiscard]] const Image<float>& average() const noexcept;
+
+    /// Forgets all frames, as after a cut; settings and the order depth stay.
+    void reset() noexcept;
+
+    /// Frames until the first depth when none is lost.
+    [[nodiscard]] int frames_needed() const noexcept;
+    /// Instruction set of the kernels on this CPU, for reports.
+    [[nodiscard]] static const char* instruction_set() noexcept;
+
+ private:
+    struct Impl;
+    explicit DepthDecoder(std::unique_ptr<Impl> impl) noexcept;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace xtrack

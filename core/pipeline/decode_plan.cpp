@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/decode_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace xtrack {
+namespace {
+
+// Periods and phases from text files agree to their printed digits.
+constexpr double kSamePeriod = 1e-6;
+constexpr double kSamePhaseRad = 1e-4;
+// A flat at least this bright serves as white, at most this dark as black (of full light).
+constexpr double kWhiteLevel = 0.9;
+constexpr double kBlackLevel = 0.1;
+
+Error unsupported(std::string message) {
+    return Error{ErrorCode::unsupported, "pattern sequence: " + std::move(message)};
+}
+Error malformed(std::string message) {
+    return Error{ErrorCode::invalid_argument, "pattern sequence: " + std::move(message)};
+}
+
+double turned(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
+
+Result<std::vector<SinePlan>> collect_sines(const PatternSequence& sequence) {
+    std::vector<SinePlan> sines;
+    for (std::size_t i = 0; i < sequence.patterns.size(); ++i) {
+        const Pattern& pattern = sequence.patterns[i];
+        if (pattern.kind != PatternKind::sine) {
+            continue;
+        }
+        if (!(pattern.period_px > 0.0) || !std::isfinite(pattern.period_px)) {
+            return malformed("entry " + std::to_string(i) + ": period_px must be above 0");
+        }
+        auto same = std::find_if(sines.begin(), sines.end(), [&](const SinePlan& plan) {
+            return std::fabs(plan.period_px - pattern.period_px) <= kSamePeriod * pattern.period_px;
+        });
+        if (same == sines.end()) {
+            same = sines.insert(sines.end(), SinePlan{});
+            same->period_px = pattern.period_px;
+        }
+        same->patterns.push_back(static_cast<int>(i));
+        same->phases_rad.push_back(pattern.phase_rad[0]);
+    }
+    for (SinePlan& plan : sines) {
+        auto taps = least_squares_taps(plan.phases_rad);
+        if (!taps) {
+            return malformed("period " + std::to_string(plan.period_px) +
+                             " px: " + taps.error().message);
+        }
+        plan.newest_taps = *taps;
+        plan.gamma =
+            GammaCorrection(plan.newest_taps, plan.phases_rad, sequence.gamma.value_or(1.0));
+    }
+    std::sort(sines.begin(), sines.end(),
+              [](const SinePlan& a, const SinePlan& b) { return a.period_px > b.period_px; });
+    return sines;
+}
+
+Result<std::optional<GrayPlan>> collect_gray(const PatternSequence& sequence) {
+    std::optional<GrayPlan> gray;
+    int white = -1;
+    int black = -1;
+    for (std::size_t i = 0; i < sequence.patterns.size(); ++i) {
+        const Pattern& pattern = sequence.patterns[i];
+        const int index = static_cast<int>(i);
+        if (pattern.kind == PatternKind::flat) {
+            white = pattern.level >= kWhiteLevel ? index : white;
+            black = pattern.level <= kBlackLevel ? index : black;
+            continue;
+        }
+        if (pattern.kind != PatternKind::gray_code) {
+            continue;
+        }
+        if (pattern.bits < 1 || pattern.bits > kMaxGrayBits || pattern.bit < 0 ||
+            pattern.bit >= pattern.bits || !(pattern.cell_px > 0.0)) {
+            return malformed("entry " + std::to_string(i) +
+                             ": a Gray code needs 0 <= bit < bits <= 16 and cell_px above 0");
+        }
+        if (!gray) {
+            gray.emplace();
+            gray->bits = pattern.bits;
+            gray->cell_px = pattern.cell_px;
+            gray->offset_px = pattern.offset_px;
+            gray->image.fill(-1);
+            gray->inverse.fill(-1);
+        }
+        if (pattern.bits != gray->bits || pattern.cell_px != gray->cell_px ||
+            pattern.offset_px != gray->offset_px) {
+            return unsupported("entry " + std::to_string(i) +
+                               ": a second Gray code with other cells; use one");
+        }
+        (pattern.inverted ? gray->inverse : gray->image)[static_cast<std::size_t>(pattern.bit)] =
+            index;
+    }
+    if (!gray) {
+        return gray;
+    }
+    gray->white = white;
+    gray->black = black;
+    bool all_inverted = true;
+    for (int bit = 0; bit < gray->bits; ++bit) {
+        const auto b = static_cast<std::size_t>(bit);
+        if (gray->image[b] < 0) {
+            return malformed("Gray code bit " + std::to_string(bit) + " of " +
+                             std::to_string(gray->bits) + " is missing");
+        }
+        all_inverted = all_inverted && gray->inverse[b] >= 0;
+    }
+    if (!all_inverted && (white < 0 || black < 0)) {
+        return unsupported(
+            "a Gray code needs flat patterns of level 1 and 0, or every bit inverted as well, to "
+            "tell dark skin from a dark stripe");
+    }
+    return gray;
+}
+
+Result<std::optional<CyclePlan>> find_cycle(const SinePlan& sine, int pattern_count,
+                                            PhaseTaps choice) {
+    const auto length = static_cast<int>(sine.patterns.size());
+    const double step = turned(sine.phases_rad[1] - sine.phases_rad[0]);
+    bool even = length == pattern_count;
+    for (int n = 0; n < length; ++n) {
+        const auto here = static_cast<std::size_t>(n);
+        const auto next = static_cast<std::size_t>((n + 1) % length);
+        even = even && std::fabs(turned(sine.phases_rad[next] - sine.phases_rad[here] - step)) <
+                           kSamePhaseRad;
+    }
+    TapDesign design = TapDesign::three_plus_two;
+    switch (choice) {
+        case PhaseTaps::least_squares: return std::optional<CyclePlan>{};
+        case PhaseTaps::automatic:
+            if (!even || length != 3) {
+                return std::optional<CyclePlan>{};
+            }
+            break;
+        case PhaseTaps::three_plus_one: design = TapDesign::three_plus_one; break;
+        case PhaseTaps::three_plus_two: break;
+        case PhaseTaps::four_plus_one: design = TapDesign::four_plus_one; break;
+    }
+    const int wanted = design == TapDesign::four_plus_one ? 4 : 3;
+    if (!even || length != wanted) {
+        return unsupported("the chosen taps need a cycle of " + std::to_string(wanted) +
+                           " equal steps of one period and nothing else; choose least_squares");
+    }
+    CyclePlan cycle;
+    cycle.images = tap_count(design);
+    for (const double first : sine.phases_rad) {
+        auto taps = design_taps(design, step, first);
+        if (!taps) {
+            return taps.error();
+        }
+        cycle.designs.push_back(*taps);
+    }
+    return std::optional<CyclePlan>{cycle};
+}
+
+}  // namespace
+
+Result<DecodePlan> DecodePlan::create(const PatternSequence& sequence,
+                                      const DecodeSettings& settings) {
+    if (sequence.patterns.empty()) {
+        return malformed("it is empty");
+    }
+    for (std::size_t i = 0; i < sequence.patterns.size(); ++i) {
+        if (sequence.patterns[i].kind == PatternKind::rgb_sine) {
+            return unsupported("entry " + std::to_string(i) +
+                               " is rgb_sine; colour fringes are not decoded by this version, "
+                               "project grey sine patterns instead");
+        }
+    }
+    if (sequence.gamma && (!(*sequence.gamma > 0.0) || !std::isfinite(*sequence.gamma))) {
+        return malformed("gamma must be above 0");
+    }
+    DecodePlan plan;
+    plan.axis = sequence.axis;
+    plan.coded_length_px = sequence.coded_length_px();
+    plan.pattern_count = static_cast<int>(sequence.patterns.size());
+    if (plan.coded_length_px < 1) {
+        return malformed("projector_size must be at least one pixel along the coded axis");
+    }
+    auto sines = collect_sines(sequence);
+    if (!sines) {
+        return sines.error();
+    }
+    plan.sines = *std::move(sines);
+    auto gray = collect_gray(sequence);
+    if (!gray) {
+        return gray.error();
+    }
+    plan.gray = *gray;
+    if (plan.sines.empty() && !plan.gray) {
+        return unsupported("it has neither sines nor a Gray code; nothing in it codes position");
+    }
+    if (plan.gray && !plan.sines.empty() &&
+        plan.gray->cell_px > plan.sines.front().period_px * (1.0 + kSamePeriod)) {
+        return unsupported("Gray code cells wider than the longest period leave its order open");
+    }
+    if (plan.sines.size() == 1) {
+        auto cycle = find_cycle(plan.sines.front(), plan.pattern_count, settings.taps);
+        if (!cycle) {
+            return cycle.error();
+        }
+        plan.cycle = *std::move(cycle);
+    } else if (settings.taps != PhaseTaps::automatic && settings.taps != PhaseTaps::least_squares) {
+        return unsupported("the chosen taps need a sequence of one period; choose least_squares");
+    }
+    for (const SinePlan& sine : plan.sines) {
+        plan.needed.insert(plan.needed.end(), sine.patterns.begin(), sine.patterns.end());
+    }
+    if (plan.gray) {
+        const auto add = [&](int pattern) {
+            if (pattern >= 0) {
+                plan.needed.push_back(pattern);
+            }
+        };
+        for (int bit = 0; bit < plan.gray->bits; ++bit) {
+            add(plan.gray->image[static_cast<std::size_t>(bit)]);
+            add(plan.gray->inverse[static_cast<std::size_t>(bit)]);
+        }
+        add(plan.gray->white);
+        add(plan.gray->black);
+    }
+    std::sort(plan.needed.begin(), plan.needed.end());
+    return plan;
+}
+
+}  // namespace xtrack

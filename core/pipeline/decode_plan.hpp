@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include <xtrack/decode_settings.hpp>
+#include <xtrack/pattern.hpp>
+#include <xtrack/result.hpp>
+
+#include "core/decode/gamma_correction.hpp"
+#include "core/decode/taps.hpp"
+#include "core/unwrap/gray_code.hpp"
+
+namespace xtrack {
+
+/// The images of one period. Indices are into PatternSequence::patterns.
+struct SinePlan {
+    double period_px = 0.0;
+    std::vector<int> patterns;
+    std::vector<double> phases_rad;
+    TapSet newest_taps;  ///< least squares over the newest image of each pattern
+    GammaCorrection gamma;
+};
+
+/// A named design over consecutive images of a sequence that is one cycle of one period.
+struct CyclePlan {
+    int images = 0;               ///< consecutive images that a design combines
+    std::vector<TapSet> designs;  ///< by the pattern of the oldest image
+};
+
+struct GrayPlan {
+    int bits = 0;
+    std::array<int, kMaxGrayBits> image{};
+    std::array<int, kMaxGrayBits> inverse{};  ///< -1: none
+    int white = -1;
+    int black = -1;
+    double cell_px = 0.0;
+    double offset_px = 0.0;
+};
+
+/// What to do with a sequence: found once, when a decoder is made.
+struct DecodePlan {
+    Axis axis = Axis::x;
+    int coded_length_px = 0;
+    int pattern_count = 0;
+    std::vector<SinePlan> sines;  ///< longest period first
+    std::optional<CyclePlan> cycle;
+    std::optional<GrayPlan> gray;
+    std::vector<int> needed;  ///< patterns without which there is no depth, ascending
+
+    /// @return unsupported or invalid_argument, naming the pattern
+    [[nodiscard]] static Result<DecodePlan> create(const PatternSequence& patterns,
+                                                   const DecodeSettings& settings);
+};
+
+}  // namespace xtrack

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/order_reference.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace xtrack {
+namespace {
+
+// Share of the volume's reach that a period must cover.
+constexpr double kMinUniqueShare = 0.9;
+
+Error repeats(double period_px, const std::string& why) {
+    const auto px = std::to_string(static_cast<int>(std::lround(period_px)));
+    return Error{ErrorCode::unsupported, "pattern sequence: its longest period of " + px +
+                                             " px repeats " + why +
+                                             "; add a longer period or a Gray code, or give the "
+                                             "order from a depth image"};
+}
+
+}  // namespace
+
+Result<OrderReference> OrderReference::create(const Triangulation* geometry, Size image,
+                                              double period_px, int coded_length_px) {
+    OrderReference reference;
+    const int entries = (image.height + kRowsPerEntry - 1) / kRowsPerEntry;
+    reference.middle_px_.resize(image.width, entries);
+    const double last_px = coded_length_px - 0.5;
+    constexpr double kFirstPx = -0.5;
+    if (period_px >= coded_length_px) {
+        reference.middle_px_.fill(static_cast<float>(0.5 * (kFirstPx + last_px)));
+        return reference;
+    }
+    if (geometry == nullptr || !geometry->reach(0, 0)) {
+        return repeats(period_px, "on the projector, and the rig names no working_volume_mm");
+    }
+    double widest_px = 0.0;
+    for (int entry = 0; entry < entries; ++entry) {
+        const int v = std::min(entry * kRowsPerEntry + kRowsPerEntry / 2, image.height - 1);
+        float* row = reference.middle_px_.row(entry);
+        for (int u = 0; u < image.width; ++u) {
+            const VolumeReach reach = *geometry->reach(u, v);
+            const double near = std::clamp(reach.near_px, kFirstPx, last_px);
+            const double far = std::clamp(reach.far_px, kFirstPx, last_px);
+            const double length = std::fabs(far - near);
+            widest_px = std::max(widest_px, length);
+            const double to_middle = std::copysign(0.5 * std::min(length, period_px), far - near);
+            row[u] = static_cast<float>(near + to_middle);
+        }
+    }
+    if (period_px < kMinUniqueShare * widest_px) {
+        return repeats(period_px, "inside the working volume, which spans " +
+                                      std::to_string(static_cast<int>(std::lround(widest_px))) +
+                                      " px");
+    }
+    return reference;
+}
+
+}  // namespace xtrack

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <xtrack/image.hpp>
+#include <xtrack/result.hpp>
+
+#include "core/depth/triangulation.hpp"
+
+namespace xtrack {
+
+/// The coordinate nearest to which a period is unwrapped when the order follows from the working
+/// volume: the middle of what a pixel can see. It varies slowly, so one row serves a few.
+class OrderReference {
+ public:
+    OrderReference() = default;
+
+    /// Where the period is as long as the coded axis, the middle of the projector serves all.
+    /// Where the volume reaches further than one period, by up to a tenth, the near end is kept
+    /// unique and the far end given up: hands are near.
+    /// @param geometry null: no rig
+    /// @return unsupported when the period repeats within the working volume
+    [[nodiscard]] static Result<OrderReference> create(const Triangulation* geometry, Size image,
+                                                       double period_px, int coded_length_px);
+
+    /// `width` floats for image row y.
+    [[nodiscard]] const float* row(int y) const noexcept {
+        return middle_px_.row(y / kRowsPerEntry);
+    }
+
+ private:
+    static constexpr int kRowsPerEntry = 4;
+    Image<float> middle_px_;
+};
+
+}  // namespace xtrack
