@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include <xtrack/tracker_settings.hpp>
+
+#include "gestures/segment/grid.hpp"
+#include "gestures/segment/parts.hpp"
+
+namespace xtrack::segment {
+
+/// Where a hand is expected, from the frames before.
+struct PalmPrior {
+    Vec3f palm_mm = Vec3f::Zero();
+    Vec3f arm_direction = Vec3f::Zero();
+    float palm_radius_mm = 0.0F;
+};
+
+/// A place on a part that may be a palm.
+struct PalmCandidate {
+    int part = -1;
+    int pixel = -1;
+    float radius_mm = 0.0F;
+    Vec3f centre_mm = Vec3f::Zero();
+    Vec3f arm_direction = Vec3f::Zero();
+    bool arm_seen = false;
+    float wrist_mm = 0.0F;  ///< distance from the centre to the wrist along arm_direction
+    float reach_mm = 0.0F;  ///< how far the hand goes from the centre
+    float score = 0.0F;     ///< 0..1
+    int prior = -1;         ///< the expected palm it agrees with
+};
+
+inline constexpr int kCandidatesMax = 6;
+
+/// Looks for palms on one part: the thickest place near each of its ends (the two farthest apart,
+/// the one farthest from the body, the nearest to the camera) and near every expected palm.
+/// @param out room for kCandidatesMax
+/// @return how many were written; their scores say which of them look like hands
+int search_palms(const Grid& grid, const Parts& parts, int part, std::span<const PalmPrior> priors,
+                 const TrackerSettings& settings, std::span<PalmCandidate> out);
+
+/// How far a hand may reach from the palm's centre: to the tip of the middle finger.
+[[nodiscard]] float reach_limit_mm(float palm_radius_mm);
+
+}  // namespace xtrack::segment

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gestures/segment/grid.hpp"
+
+namespace xtrack::segment {
+
+/// A connected piece of the scene that is thin enough to be a limb: pixels()[begin..end).
+struct Part {
+    int begin = 0, end = 0;
+    float area_mm2 = 0.0F;
+    float thickest_mm = 0.0F;  ///< largest inscribed radius
+    int body = -1;             ///< label of the surface it belongs to
+    bool touches_border = false;
+    int root_pixels = 0;            ///< that touch the thick body it grew from
+    Vec3f root_mm = Vec3f::Zero();  ///< their mean
+};
+
+/// A surface that is too thick for a limb.
+struct Body {
+    float area_mm2 = 0.0F;  ///< of its thick core
+    float depth_mm = 0.0F;  ///< mean of its thick core
+};
+
+/// Cuts a depth image at its discontinuities into surfaces, and every surface into a thick body
+/// (torso, head, wall) and the thin limbs that grow from it: a morphological opening in
+/// millimetres, whose residue is what may hold a hand. A limb that is its own surface comes through
+/// whole.
+class Parts {
+ public:
+    void create(const Grid& grid);
+
+    /// @param foreground grid depth without background
+    /// @param thick_mm radius above which a surface is body
+    /// @param area_min_mm2 smaller pieces are dropped
+    void find(const Grid& grid, std::span<const float> foreground, float thick_mm,
+              float area_min_mm2);
+
+    [[nodiscard]] std::span<const Part> parts() const noexcept { return parts_; }
+    [[nodiscard]] std::span<const int> pixels(const Part& p) const noexcept {
+        return {pixels_.data() + p.begin, static_cast<std::size_t>(p.end - p.begin)};
+    }
+    /// Number of the part that a grid pixel belongs to, or -1.
+    [[nodiscard]] int part_of(int i) const noexcept {
+        return part_of_[static_cast<std::size_t>(i)];
+    }
+    /// Radius of the largest circle round a pixel that stays on its surface, mm and grid px.
+    /// The image's border does not end a surface.
+    [[nodiscard]] float radius_px(int i) const noexcept {
+        return static_cast<float>(distance_[static_cast<std::size_t>(i)]) / kUnit - 0.5F;
+    }
+    [[nodiscard]] float radius_mm(const Grid& grid, int i) const noexcept {
+        return radius_px(i) * grid.pitch_mm(grid.z[static_cast<std::size_t>(i)]);
+    }
+    [[nodiscard]] std::span<const Body> bodies() const noexcept { return bodies_; }
+
+    static constexpr int kPartsMax = 32;
+
+ private:
+    static constexpr float kUnit = 5.0F;  // chamfer 5-7-11 (Borgefors 1986), within 2 %
+
+    void label_surfaces(const Grid& grid, std::span<const float> foreground);
+    int root_of(int label) noexcept;
+    void measure_distance(const Grid& grid);
+    void mark_body(const Grid& grid, float thick_mm);
+    void collect(const Grid& grid, float area_min_mm2);
+
+    std::vector<int> label_;   ///< surface of a pixel, 0 = none
+    std::vector<int> parent_;  ///< union-find over labels
+    std::vector<float> area_;  ///< mm2, by label
+    std::vector<std::int32_t> distance_;
+    std::vector<std::int32_t> ball_;  ///< > 0: inside a ball of the thick core
+    std::vector<std::int16_t> part_of_;
+    std::vector<int> pixels_;
+    std::vector<Part> parts_;
+    std::vector<Body> bodies_;
+    std::vector<float> kept_;  ///< foreground of surfaces large enough
+};
+
+}  // namespace xtrack::segment

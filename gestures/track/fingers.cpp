@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gestures/track/fingers.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace xtrack::track {
+
+namespace {
+
+/// A tip is at least this far from the palm's centre, in palm radii: nearer is a knuckle.
+constexpr float kTipRadii = 1.3F;
+/// The finger's width is read this far below its tip, mm.
+constexpr float kWidthBelowMm = 14.0F;
+/// A wider end is no fingertip, mm: two fingers that touch are 34.
+constexpr float kTipWidthMaxMm = 31.0F;
+constexpr float kTipWidthMinMm = 4.0F;
+/// Skin within this of an outline pixel gives the depth there, grid px: the pixel itself may mix
+/// finger and background.
+constexpr int kSkinReach = 2;
+/// Beyond this many palm radii the hand is fingers.
+constexpr float kFingersBeyondRadii = 1.35F;
+/// A hole between thumb and index: its area, mm2, and how far from the palm, in palm radii.
+constexpr float kRingAreaMinMm2 = 70.0F;
+constexpr float kRingAreaMaxMm2 = 3500.0F;
+constexpr float kRingNearRadii = 0.9F;
+constexpr float kRingFarRadii = 2.3F;
+constexpr int kSmoothRounds = 2;
+
+}  // namespace
+
+void FingerReader::create(const segment::Grid& grid) {
+    contour_.create(grid);
+    const std::size_t n = grid.size();
+    points_.reserve(n);
+    distance_.reserve(n);
+    scratch_.reserve(n);
+    outside_.assign(n, 0);
+    queue_.reserve(n);
+}
+
+void FingerReader::read(const segment::Grid& grid, std::span<const std::uint8_t> labels,
+                        const HandRegion& region, const Vec3f& palm_normal, int side_hint,
+                        float tip_prominence_mm, FingerReading& out) {
+    out = {};
+    const int start = grid.index(static_cast<int>(std::lround(region.palm_px.x())),
+                                 static_cast<int>(std::lround(region.palm_px.y())));
+    contour_.trace(grid, labels, region.label, start);
+    if (contour_.points().size() < 16) {
+        return;
+    }
+    measure_profile(grid, labels, region);
+    find_tips(region, tip_prominence_mm, out);
+
+    const float beyond = kFingersBeyondRadii * region.palm_radius_mm;
+    for (int y = region.y_begin; y < region.y_end; ++y) {
+        for (int x = region.x_begin; x < region.x_end; ++x) {
+            const int i = grid.index(x, y);
+            if (labels[static_cast<std::size_t>(i)] != region.label) {
+                continue;
+            }
+            const Vec3f d = grid.point(i) - region.palm_mm;
+            if (d.norm() > beyond && d.dot(region.arm_direction) < 0.6F * d.norm()) {
+                const float pitch = grid.pitch_mm(grid.z[static_cast<std::size_t>(i)]);
+                out.finger_area_mm2 += pitch * pitch;
+            }
+        }
+    }
+    name_fingers(region, side_hint, out);
+    if (out.count > 0) {
+        float sum = 0.0F;
+        float n = 0.0F;
+        for (std::size_t k = 0; k < out.count; ++k) {
+            if (static_cast<int>(k) != out.thumb) {
+                sum += (out.tips[k].position_mm - region.palm_mm).dot(palm_normal);
+                n += 1.0F;
+            }
+        }
+        out.curl_mm = n > 0.0F ? sum / n : 0.0F;
+    }
+    find_ring(grid, labels, region, out);
+}
+
+void FingerReader::measure_profile(const segment::Grid& grid, std::span<const std::uint8_t> labels,
+                                   const HandRegion& region) {
+    const auto outline = contour_.points();
+    points_.clear();
+    distance_.clear();
+    const float wrist = (region.wrist_mm - region.palm_mm).norm();
+    for (const int i : outline) {
+        float sum = 0.0F;
+        float n = 0.0F;
+        for (int dy = -kSkinReach; dy <= kSkinReach; ++dy) {
+            for (int dx = -kSkinReach; dx <= kSkinReach; ++dx) {
+                const auto k = static_cast<std::size_t>(i + dy * grid.width + dx);
+                if (labels[k] == region.label) {
+                    sum += grid.z[k];
+                    n += 1.0F;
+                }
+            }
+        }
+        const float z = sum / n;
+        const Vec2f ray = grid.ray[static_cast<std::size_t>(i)];
+        const Vec3f p(ray.x() * z, ray.y() * z, z);
+        const Vec3f d = p - region.palm_mm;
+        const bool cut = d.dot(region.arm_direction) > wrist - 2.5F * grid.pitch_mm(z);
+        const int x = grid.x_of(i);
+        const int y = grid.y_of(i);
+        const bool border =
+            x == 0 || y == 0 || x == grid.inner_width - 1 || y == grid.inner_height - 1;
+        points_.push_back(p);
+        distance_.push_back(cut || border ? 0.0F : d.norm());
+    }
+    const std::size_t n = distance_.size();
+    for (int round = 0; round < kSmoothRounds; ++round) {
+        scratch_.assign(distance_.begin(), distance_.end());
+        for (std::size_t k = 0; k < n; ++k) {
+            const float before = scratch_[(k + n - 1) % n];
+            const float after = scratch_[(k + 1) % n];
+            if (scratch_[k] > 0.0F && before > 0.0F && after > 0.0F) {
+                distance_[k] = 0.25F * before + 0.5F * scratch_[k] + 0.25F * after;
+            }
+        }
+    }
+}
+
+void FingerReader::find_tips(const HandRegion& region, float tip_prominence_mm,
+                             FingerReading& out) const {
+    const auto n = static_cast<int>(distance_.size());
+    const auto at = [&](int k) { return distance_[static_cast<std::size_t>(((k % n) + n) % n)]; };
+    const auto point = [&](int k) { return points_[static_cast<std::size_t>(((k % n) + n) % n)]; };
+    const float least = kTipRadii * region.palm_radius_mm;
+    for (int k = 0; k < n; ++k) {
+        const float d = at(k);
+        if (d < least || d < at(k - 1) || d <= at(k + 1)) {
+            continue;
+        }
+        // Walk down to both valleys; the walk ends where something stands higher.
+        float low_before = d;
+        for (int m = 1; m < n && at(k - m) <= d; ++m) {
+            low_before = std::min(low_before, at(k - m));
+        }
+        float low_after = d;
+        for (int m = 1; m < n && at(k + m) < d; ++m) {
+            low_after = std::min(low_after, at(k + m));
+        }
+        const float prominence = d - std::max(low_before, low_after);
+        if (prominence < tip_prominence_mm) {
+            continue;
+        }
+        const float level = d - std::min(kWidthBelowMm, 0.9F * prominence);
+        int before = 1;
+        while (before < n && at(k - before) > level) {
+            ++before;
+        }
+        int after = 1;
+        while (after < n && at(k + after) > level) {
+            ++after;
+        }
+        const float width = (point(k - before) - point(k + after)).norm();
+        if (width > kTipWidthMaxMm || width < kTipWidthMinMm || out.count >= kTipsMax) {
+            continue;
+        }
+        Tip& tip = out.tips[out.count++];
+        tip.contour_index = k;
+        tip.distance_mm = d;
+        tip.prominence_mm = prominence;
+        tip.width_mm = width;
+        // The outline runs through the centres of the outermost pixels; the rim is half one on.
+        const Vec3f outward = (point(k) - region.palm_mm).normalized();
+        const float half = 0.5F * region.palm_radius_mm / std::max(1.0F, region.palm_radius_px);
+        tip.position_mm = point(k) + half * outward;
+    }
+}
+
+void FingerReader::find_ring(const segment::Grid& grid, std::span<const std::uint8_t> labels,
+                             const HandRegion& region, FingerReading& out) {
+    // Background that cannot be reached from outside the box is a hole.
+    const int w = grid.width;
+    const int x0 = region.x_begin - 1;
+    const int y0 = region.y_begin - 1;
+    const int x1 = region.x_end;
+    const int y1 = region.y_end;
+    for (int y = y0; y <= y1; ++y) {
+        std::fill_n(outside_.begin() + grid.index(x0, y), x1 - x0 + 1, std::uint8_t{0});
+    }
+    const auto flood = [&](int seed) {
+        queue_.clear();
+        queue_.push_back(seed);
+        outside_[static_cast<std::size_t>(seed)] = 1;
+        for (std::size_t next = 0; next < queue_.size(); ++next) {
+            const int i = queue_[next];
+            const int x = grid.x_of(i);
+            const int y = grid.y_of(i);
+            const auto visit = [&](int m, bool in_box) {
+                const auto k = static_cast<std::size_t>(m);
+                if (in_box && outside_[k] == 0 && labels[k] != region.label) {
+                    outside_[k] = 1;
+                    queue_.push_back(m);
+                }
+            };
+            visit(i - 1, x > x0);
+            visit(i + 1, x < x1);
+            visit(i - w, y > y0);
+            visit(i + w, y < y1);
+        }
+    };
+    flood(grid.index(x0, y0));
+    float best_area = 0.0F;
+    Vec2f best = Vec2f::Zero();
+    for (int y = y0; y <= y1; ++y) {
+        for (int x = x0; x <= x1; ++x) {
+            const auto k = static_cast<std::size_t>(grid.index(x, y));
+            if (outside_[k] != 0 || labels[k] == region.label) {
+                continue;
+            }
+            flood(static_cast<int>(k));
+            const float pitch = grid.pitch_mm(region.palm_mm.z());
+            const float area = static_cast<float>(queue_.size()) * pitch * pitch;
+            if (area < kRingAreaMinMm2 || area > kRingAreaMaxMm2 || area <= best_area) {
+                continue;
+            }
+            Vec2f centre = Vec2f::Zero();
+            for (const int i : queue_) {
+                centre += Vec2f(static_cast<float>(grid.x_of(i)), static_cast<float>(grid.y_of(i)));
+            }
+            centre /= static_cast<float>(queue_.size());
+            const float radii = (centre - region.palm_px).norm() / region.palm_radius_px;
+            if (radii > kRingNearRadii && radii < kRingFarRadii) {
+                best_area = area;
+                best = centre;
+            }
+        }
+    }
+    if (best_area <= 0.0F) {
+        return;
+    }
+    // The ring closes at the skin beyond the hole, seen from the palm.
+    const Vec2f u = (best - region.palm_px).normalized();
+    float far = 0.0F;
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+        const int i = contour_.points()[k];
+        const Vec2f p(static_cast<float>(grid.x_of(i)), static_cast<float>(grid.y_of(i)));
+        const Vec2f d = p - region.palm_px;
+        const float along = d.dot(u);
+        if (along > far && (d - along * u).norm() < 0.35F * along) {
+            far = along;
+            out.ring_tip_mm = points_[k];
+        }
+    }
+    out.ring = far > 0.0F;
+}
+
+}  // namespace xtrack::track
