@@ -48,9 +48,12 @@ Result<Session> open_recording(const std::filesystem::path& folder, const Sessio
     }
     switch (recording->kind()) {
         case RecordingKind::joints: {
-            auto source = joint_source(folder);
-            return source ? Session::create(std::move(*source), options)
-                          : Result<Session>(source.error());
+            auto frames = read_joint_recording(*recording->joints_file());
+            if (!frames) {
+                return frames.error();
+            }
+            return Session::create(
+                std::unique_ptr<HandSource>(new HandSequence(std::move(*frames))), options);
         }
         case RecordingKind::fringe: {
             if (!recording->has_rig()) {
