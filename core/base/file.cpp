@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/base/file.hpp"
+
+#include <cstdint>
+#include <fstream>
+#include <random>
+#include <system_error>
+#include <utility>
+
+namespace xtrack::base {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int kTemporaryNameTries = 16;
+
+Error io_error(const fs::path& path, const std::string& what) {
+    return {ErrorCode::io, path.string() + ": " + what};
+}
+
+// A name nobody else uses, beside the target so that the last rename stays on one file system. The
+// random part is no secret: what creates the file or folder refuses one that is there.
+fs::path temporary_beside(const fs::path& target) {
+    static constexpr char kDigits[] = "0123456789abcdef";
+    std::random_device random;
+    std::string name = "." + target.filename().string() + ".";
+    for (int i = 0; i < 8; ++i) {
+        name += kDigits[random() % 16U];
+    }
+    return target.parent_path() / (name + ".part");
+}
+
+// "out/" and "out" are the same folder.
+fs::path without_trailing_slash(const fs::path& path) {
+    return path.has_filename() ? path : path.parent_path();
+}
+
+Result<void> write_plainly(const fs::path& path, std::string_view bytes) {
+    std::ofstream out(path, std::ios::binary | std::ios::trunc);
+    std::error_code error;
+    fs::permissions(path, fs::perms::owner_read | fs::perms::owner_write, error);
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    out.close();
+    if (!out || error) {
+        return io_error(path, "cannot be written; is the disk full or the folder read-only?");
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<std::string> read_file(const fs::path& path, std::size_t max_bytes) {
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (!fs::exists(status)) {
+        return Error{ErrorCode::not_found, path.string() + ": is not there; check the path"};
+    }
+    // A device or a pipe has no end that one could trust.
+    if (!fs::is_regular_file(status)) {
+        return io_error(path, "is not a file; give a plain file");
+    }
+    const std::uintmax_t size = fs::file_size(path, error);
+    if (error) {
+        return io_error(path, "cannot be read; check its permissions");
+    }
+    if (size > max_bytes) {
+        return Error{ErrorCode::malformed, path.string() + ": is " + std::to_string(size) +
+                                               " bytes long; at most " + std::to_string(max_bytes) +
+                                               " are read, shorten or split it"};
+    }
+    std::ifstream in(path, std::ios::binary);
+    std::string bytes(static_cast<std::size_t>(size), '\0');
+    in.read(bytes.data(), static_cast<std::streamsize>(size));
+    if (!in && size != 0) {
+        return io_error(path, "cannot be read; check its permissions");
+    }
+    return bytes;
+}
+
+Result<void> write_file(const fs::path& path, std::string_view bytes) {
+    const fs::path temporary = temporary_beside(path);
+    std::error_code error;
+    if (auto ok = write_plainly(temporary, bytes); !ok) {
+        fs::remove(temporary, error);
+        return io_error(path, "cannot be written; is the disk full or the folder read-only?");
+    }
+    fs::rename(temporary, path, error);
+    if (error) {
+        std::error_code ignored;
+        fs::remove(temporary, ignored);
+        return io_error(path, "cannot be replaced; " + error.message());
+    }
+    return {};
+}
+
+Result<NewFolder> NewFolder::create(const fs::path& target) {
+    NewFolder folder;
+    folder.target_ = without_trailing_slash(target);
+    std::error_code error;
+    if (folder.target_.empty() || fs::exists(fs::symlink_status(folder.target_, error))) {
+        return Error{ErrorCode::invalid_argument,
+                     target.string() + ": exists already; remove it or give another name"};
+    }
+    const fs::path parent = folder.target_.parent_path();
+    if (!parent.empty() && !fs::is_directory(parent, error)) {
+        return Error{ErrorCode::not_found,
+                     target.string() + ": its parent folder is missing; make it first"};
+    }
+    for (int i = 0; i < kTemporaryNameTries; ++i) {
+        const fs::path temporary = temporary_beside(folder.target_);
+        if (fs::create_directory(temporary, error)) {
+            folder.temporary_ = temporary;
+            fs::permissions(temporary, fs::perms::owner_all, error);
+            return folder;
+        }
+        if (error) {
+            break;
+        }
+    }
+    return io_error(target, "cannot be made; is its parent folder writable?");
+}
+
+NewFolder::NewFolder(NewFolder&& other) noexcept { *this = std::move(other); }
+
+NewFolder& NewFolder::operator=(NewFolder&& other) noexcept {
+    if (this != &other) {
+        discard();
+        target_ = std::exchange(other.target_, {});
+        temporary_ = std::exchange(other.temporary_, {});
+    }
+    return *this;
+}
+
+NewFolder::~NewFolder() { discard(); }
+
+Result<void> NewFolder::make_folder(const fs::path& inside) const {
+    std::error_code error;
+    fs::create_directories(temporary_ / inside, error);
+    if (error) {
+        return io_error(target_ / inside, "cannot be made; " + error.message());
+    }
+    return {};
+}
+
+Result<void> NewFolder::write(const fs::path& inside, std::string_view bytes) const {
+    if (!write_plainly(temporary_ / inside, bytes)) {
+        return io_error(target_ / inside, "cannot be written; is the disk full?");
+    }
+    return {};
+}
+
+Result<void> NewFolder::commit() {
+    std::error_code error;
+    // rename() would replace an empty folder silently.
+    if (fs::exists(fs::symlink_status(target_, error))) {
+        discard();
+        return io_error(target_, "has appeared meanwhile; remove it or give another name");
+    }
+    fs::rename(temporary_, target_, error);
+    if (error) {
+        discard();
+        return io_error(target_, "cannot be made; " + error.message());
+    }
+    temporary_.clear();
+    return {};
+}
+
+void NewFolder::discard() noexcept {
+    if (temporary_.empty()) {
+        return;
+    }
+    std::error_code ignored;
+    fs::remove_all(temporary_, ignored);
+    temporary_.clear();
+}
+
+bool stays_inside(std::string_view text) noexcept {
+    if (text.empty() || text.find('\0') != std::string_view::npos ||
+        text.find(':') != std::string_view::npos) {  // C:file, file:stream
+        return false;
+    }
+    while (true) {
+        const std::size_t slash = text.find_first_of("/\\");
+        const std::string_view part = text.substr(0, slash);
+        if (part.empty() || part == "..") {  // a leading, double or last slash is no name either
+            return false;
+        }
+        if (slash == std::string_view::npos) {
+            return true;
+        }
+        text.remove_prefix(slash + 1);
+    }
+}
+
+}  // namespace xtrack::base

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/capture/frame_list.hpp"
+
+#include <algorithm>
+
+#include "core/base/csv.hpp"
+#include "core/base/file.hpp"
+
+namespace xtrack::capture {
+
+namespace {
+
+constexpr base::CsvLimits kLimits{1024, 1'000'000, 32};
+// A century: far below what overflows once it is counted in nanoseconds.
+constexpr std::int64_t kMaxTime_us = std::int64_t{100} * 366 * 24 * 3600 * 1'000'000;
+constexpr std::int64_t kMaxSequence = std::int64_t{1} << 53U;
+
+bool is_image_name(std::string_view file) {
+    const std::size_t dot = file.rfind('.');
+    if (dot == std::string_view::npos) {
+        return false;
+    }
+    std::string extension(file.substr(dot + 1));
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+    return extension == "png" || extension == "jpg" || extension == "jpeg";
+}
+
+struct Columns {
+    std::size_t file = 0;
+    std::size_t t_us = 0;
+    std::size_t sequence = 0;
+    std::size_t pattern = 0;
+};
+
+Result<Columns> find_columns(const base::CsvReader& csv, bool with_patterns) {
+    Columns columns;
+    struct Wanted {
+        const char* name;
+        std::size_t* column;
+    };
+    const Wanted wanted[] = {{"file", &columns.file},
+                             {"t_us", &columns.t_us},
+                             {"sequence", &columns.sequence},
+                             {"pattern", &columns.pattern}};
+    for (const Wanted& w : wanted) {
+        if (w.column == &columns.pattern && !with_patterns) {
+            break;
+        }
+        const auto found = csv.required_column(w.name);
+        if (!found) {
+            return found.error();
+        }
+        *w.column = *found;
+    }
+    return columns;
+}
+
+Result<RecordingEntry> read_entry(const base::CsvReader& csv, const Columns& columns,
+                                  std::size_t patterns) {
+    RecordingEntry entry;
+    entry.file = std::string(csv.field(columns.file));
+    if (!base::stays_inside(entry.file)) {
+        return csv.error_at(columns.file, "name a file inside the recording");
+    }
+    if (!is_image_name(entry.file)) {
+        return csv.error_at(columns.file, "name a png or jpg image");
+    }
+    const auto t_us = csv.int_field(columns.t_us, -kMaxTime_us, kMaxTime_us);
+    if (!t_us) {
+        return t_us.error();
+    }
+    entry.stamp = Stamp::from_us(*t_us);
+    const auto sequence = csv.int_field(columns.sequence, 0, kMaxSequence);
+    if (!sequence) {
+        return sequence.error();
+    }
+    entry.sequence = static_cast<std::uint64_t>(*sequence);
+    if (patterns != 0 && !csv.field(columns.pattern).empty()) {
+        const auto pattern =
+            csv.int_field(columns.pattern, 0, static_cast<std::int64_t>(patterns) - 1);
+        if (!pattern) {
+            return pattern.error();
+        }
+        entry.pattern = static_cast<int>(*pattern);
+    }
+    return entry;
+}
+
+}  // namespace
+
+Result<std::vector<RecordingEntry>> parse_frame_list(std::string_view text, const std::string& name,
+                                                     std::size_t patterns) {
+    auto csv = base::CsvReader::open(text, name, kLimits);
+    if (!csv) {
+        return csv.error();
+    }
+    const auto columns = find_columns(*csv, patterns != 0);
+    if (!columns) {
+        return columns.error();
+    }
+    std::vector<RecordingEntry> entries;
+    while (true) {
+        const auto more = csv->next();
+        if (!more) {
+            return more.error();
+        }
+        if (!*more) {
+            break;
+        }
+        auto entry = read_entry(*csv, *columns, patterns);
+        if (!entry) {
+            return entry.error();
+        }
+        if (!entries.empty() && entry->stamp < entries.back().stamp) {
+            return csv->error_at(columns->t_us, "time goes backwards, sort the rows by t_us");
+        }
+        entries.push_back(std::move(*entry));
+    }
+    if (entries.empty()) {
+        return Error{ErrorCode::malformed, name + ": lists no frame; record at least one"};
+    }
+    return entries;
+}
+
+std::string frame_list_text(const std::vector<RecordingEntry>& entries) {
+    std::string text = "file,t_us,sequence,pattern\n";
+    for (const RecordingEntry& e : entries) {
+        text += e.file + "," + std::to_string(e.stamp.us()) + "," + std::to_string(e.sequence) +
+                "," + (e.pattern == kUnknownPattern ? "" : std::to_string(e.pattern)) + "\n";
+    }
+    return text;
+}
+
+}  // namespace xtrack::capture

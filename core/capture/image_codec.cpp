@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/capture/image_codec.hpp"
+
+#include <exception>
+#include <vector>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "core/capture/image_check.hpp"
+
+namespace xtrack::capture {
+
+namespace {
+
+std::string text_of(Size s) { return std::to_string(s.width) + "x" + std::to_string(s.height); }
+
+Result<void> check(std::string_view bytes, const std::string& name, Size size, int bits) {
+    const auto info = check_image(bytes, name);
+    if (!info) {
+        return info.error();
+    }
+    if (info->bits != bits) {
+        return Error{ErrorCode::malformed, name + ": has " + std::to_string(info->bits) +
+                                               " bits a channel; save it with " +
+                                               std::to_string(bits)};
+    }
+    if (info->size != size) {
+        return Error{ErrorCode::malformed, name + ": is " + text_of(info->size) +
+                                               " pixels, the recording's images are " +
+                                               text_of(size) + "; remove it or mend camera_size"};
+    }
+    return {};
+}
+
+// Decodes straight into our rows: OpenCV keeps a Mat whose size and type already fit.
+template <typename T>
+Result<void> decode(std::string_view bytes, const std::string& name, Size size, int type, int flags,
+                    Image<T>& out) {
+    try {
+        const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8UC1,
+                              const_cast<char*>(bytes.data()));  // NOLINT: OpenCV reads only
+        cv::Mat rows(size.height, size.width, type, out.row(0),
+                     static_cast<std::size_t>(out.stride()) * sizeof(T));
+        const void* ours = rows.data;
+        cv::imdecode(encoded, flags, &rows);
+        if (!rows.empty() && rows.data == ours) {
+            return {};
+        }
+    } catch (const std::exception&) {
+        // The message below says all that matters to the user.
+    }
+    return Error{ErrorCode::malformed, name + ": cannot be decoded; save it again as PNG"};
+}
+
+Result<std::string> encode(const char* extension, const cv::Mat& image,
+                           const std::vector<int>& parameters) {
+    try {
+        std::vector<unsigned char> bytes;
+        if (cv::imencode(extension, image, bytes, parameters)) {
+            return std::string(bytes.begin(), bytes.end());
+        }
+    } catch (const std::exception&) {
+        // Falls through to the same message.
+    }
+    return Error{ErrorCode::io, std::string("an image cannot be encoded as ") + extension};
+}
+
+template <typename T>
+cv::Mat wrap(ImageView<const T> image, int channels, int type) {
+    return {image.height, image.width / channels, type,
+            const_cast<T*>(image.data),  // NOLINT: OpenCV reads only
+            static_cast<std::size_t>(image.stride) * sizeof(T)};
+}
+
+}  // namespace
+
+Result<void> decode_image(std::string_view bytes, const std::string& name, Size size,
+                          PixelFormat format, Image<std::uint8_t>& out) {
+    constexpr int kBits = 8;
+    if (auto ok = check(bytes, name, size, kBits); !ok) {
+        return ok;
+    }
+    const bool grey = format == PixelFormat::grey8;
+    out.resize(size.width * (grey ? 1 : 3), size.height);
+    const int flags =
+        cv::IMREAD_IGNORE_ORIENTATION | (grey ? cv::IMREAD_GRAYSCALE : cv::IMREAD_COLOR);
+    return decode(bytes, name, size, grey ? CV_8UC1 : CV_8UC3, flags, out);
+}
+
+Result<void> decode_depth(std::string_view bytes, const std::string& name, Size size,
+                          Image<std::uint16_t>& out) {
+    constexpr int kBits = 16;
+    if (auto ok = check(bytes, name, size, kBits); !ok) {
+        return ok;
+    }
+    out.resize(size.width, size.height);
+    return decode(bytes, name, size, CV_16UC1, cv::IMREAD_ANYDEPTH | cv::IMREAD_GRAYSCALE, out);
+}
+
+Result<std::string> encode_png(ImageView<const std::uint8_t> image, PixelFormat format) {
+    const bool grey = format == PixelFormat::grey8;
+    return encode(".png", wrap(image, grey ? 1 : 3, grey ? CV_8UC1 : CV_8UC3), {});
+}
+
+Result<std::string> encode_png(ImageView<const std::uint16_t> image) {
+    return encode(".png", wrap(image, 1, CV_16UC1), {});
+}
+
+Result<std::string> encode_tiff(ImageView<const float> image) {
+    constexpr int kNoCompression = 1;
+    return encode(".tiff", wrap(image, 1, CV_32FC1),
+                  {cv::IMWRITE_TIFF_COMPRESSION, kNoCompression});
+}
+
+}  // namespace xtrack::capture

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <utility>
+
+#include <xtrack/recording.hpp>
+
+#include "core/base/frame_pool.hpp"
+
+namespace xtrack {
+
+namespace {
+
+// A decoder holds one full cycle of patterns, a pipeline a few frames on the way to it. Beyond this
+// a frame of its own is made: a recording drops nothing.
+constexpr std::size_t kPooledFrames = 16;
+
+class RecordedFrames final : public FrameSource {
+ public:
+    explicit RecordedFrames(RecordingReader recording)
+        : recording_(std::move(recording)),
+          pool_(kPooledFrames, recording_.image_size(), PixelFormat::grey8) {}
+
+    [[nodiscard]] const Rig& rig() const override { return recording_.rig(); }
+    [[nodiscard]] const PatternSequence& patterns() const override { return recording_.patterns(); }
+
+    Item next(Duration /*timeout*/) override {
+        if (!failure_.empty()) {
+            return {SourceStatus::failed, nullptr, failure_};
+        }
+        if (next_ == recording_.entries().size()) {
+            return {SourceStatus::end, nullptr, {}};
+        }
+        std::shared_ptr<Frame> frame = pool_.acquire();
+        if (!frame) {
+            frame = std::make_shared<Frame>();
+        }
+        if (auto ok = recording_.read_frame(next_, *frame); !ok) {
+            failure_ = ok.error().message;
+            return {SourceStatus::failed, nullptr, failure_};
+        }
+        ++next_;
+        return {SourceStatus::ok, std::move(frame), {}};
+    }
+
+ private:
+    RecordingReader recording_;
+    base::FramePool pool_;
+    std::size_t next_ = 0;
+    std::string failure_;
+};
+
+class RecordedDepth final : public DepthSource {
+ public:
+    explicit RecordedDepth(RecordingReader recording) : recording_(std::move(recording)) {}
+
+    [[nodiscard]] const Rig& rig() const override { return recording_.rig(); }
+
+    SourceStatus next(Duration /*timeout*/, DepthFrame& depth, std::string& message) override {
+        if (failure_.empty() && next_ == recording_.entries().size()) {
+            return SourceStatus::end;
+        }
+        if (failure_.empty()) {
+            if (auto ok = recording_.read_depth(next_, depth); !ok) {
+                failure_ = ok.error().message;
+            }
+        }
+        if (!failure_.empty()) {
+            message = failure_;
+            return SourceStatus::failed;
+        }
+        ++next_;
+        return SourceStatus::ok;
+    }
+
+ private:
+    RecordingReader recording_;
+    std::size_t next_ = 0;
+    std::string failure_;
+};
+
+Error wrong_kind(const RecordingReader& recording, const char* what) {
+    return {ErrorCode::unsupported, recording.folder().string() + ": " + what};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<FrameSource>> frame_source(const RecordingReader& recording) {
+    if (recording.kind() != RecordingKind::fringe) {
+        return wrong_kind(recording, "holds no fringes; give a recording with a pattern.yaml");
+    }
+    return std::unique_ptr<FrameSource>(std::make_unique<RecordedFrames>(recording));
+}
+
+Result<std::unique_ptr<DepthSource>> depth_source(const RecordingReader& recording) {
+    if (recording.kind() != RecordingKind::depth) {
+        return wrong_kind(recording, "holds no depth; give a recording of 16-bit depth images");
+    }
+    return std::unique_ptr<DepthSource>(std::make_unique<RecordedDepth>(recording));
+}
+
+}  // namespace xtrack

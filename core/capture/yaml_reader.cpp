@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/capture/yaml_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string_view>
+#include <utility>
+
+#include "core/capture/yaml_file.hpp"
+
+namespace xtrack::capture {
+
+namespace {
+
+// The format nests three deep: a matrix inside a map inside the file.
+constexpr int kMaxNesting = 16;
+constexpr std::size_t kMaxIndent = 64;
+
+Error bad_text(const std::string& name, int line, const std::string& what) {
+    return {ErrorCode::malformed, name + " line " + std::to_string(line) + ": " + what};
+}
+
+}  // namespace
+
+Result<void> check_yaml_text(const std::string& text, const std::string& name) {
+    if (text.size() > kMaxYamlBytes) {
+        return Error{ErrorCode::malformed, name + ": is over " + std::to_string(kMaxYamlBytes) +
+                                               " bytes long; keep the fields of the format"};
+    }
+    if (text.compare(0, 5, "%YAML") != 0) {
+        return bad_text(name, 1, "does not begin with %YAML:1.0; add that line");
+    }
+    int line = 1;
+    int depth = 0;
+    std::size_t column = 0;
+    std::size_t indent = 0;
+    bool indenting = true;
+    for (const char c : text) {
+        if (c == '\n') {
+            ++line;
+            column = indent = 0;
+            indenting = true;
+            continue;
+        }
+        if (c == '\0') {
+            return bad_text(name, line, "holds a NUL byte; save it as text");
+        }
+        // A list dash opens a level as a blank does, "- - - x" as well as by indentation.
+        indenting = indenting && (c == ' ' || c == '-');
+        indent += indenting ? 1U : 0U;
+        depth += c == '[' || c == '{' ? 1 : 0;
+        depth -= depth > 0 && (c == ']' || c == '}') ? 1 : 0;
+        if (depth > kMaxNesting || (indent > kMaxIndent && column == indent - 1 && c == '-')) {
+            return bad_text(name, line, "is nested too deep; keep the fields of the format");
+        }
+        if (indent > kMaxIndent) {
+            return bad_text(name, line, "is indented too far; indent by three blanks");
+        }
+        ++column;
+    }
+    return {};
+}
+
+YamlMap::YamlMap(cv::FileNode node, std::string name, std::string prefix)
+    : node_(std::move(node)), name_(std::move(name)), prefix_(std::move(prefix)) {}
+
+Error YamlMap::error(const char* key, const std::string& what) const {
+    return {ErrorCode::malformed, name_ + ": " + prefix_ + key + " " + what};
+}
+
+bool YamlMap::has(const char* key) const { return !node_[key].empty(); }
+
+Result<cv::FileNode> YamlMap::find(const char* key) const {
+    const cv::FileNode found = node_[key];
+    if (found.empty()) {
+        return error(key, "is missing; add it");
+    }
+    return found;
+}
+
+Result<double> YamlMap::number(const char* key) const {
+    auto found = find(key);
+    if (!found) {
+        return found.error();
+    }
+    if (!found->isInt() && !found->isReal()) {
+        return error(key, "is not a number; give one");
+    }
+    const double value = found->real();
+    if (!std::isfinite(value)) {
+        return error(key, "is NaN or infinite; give a finite number");
+    }
+    return value;
+}
+
+Result<int> YamlMap::integer(const char* key) const {
+    const auto value = number(key);
+    if (!value) {
+        return value.error();
+    }
+    if (*value != std::floor(*value) || std::abs(*value) > std::numeric_limits<int>::max()) {
+        return error(key, "is not a whole number; give one");
+    }
+    return static_cast<int>(*value);
+}
+
+Result<bool> YamlMap::flag(const char* key) const {
+    auto found = find(key);
+    if (!found) {
+        return found.error();
+    }
+    if (found->isString()) {
+        const std::string text = found->string();
+        if (text == "true" || text == "false") {
+            return text == "true";
+        }
+    } else if (found->isInt() && (found->real() == 0.0 || found->real() == 1.0)) {
+        return found->real() == 1.0;
+    }
+    return error(key, "is no truth value; give 0 or 1");
+}
+
+Result<std::string> YamlMap::word(const char* key) const {
+    auto found = find(key);
+    if (!found) {
+        return found.error();
+    }
+    if (!found->isString()) {
+        return error(key, "is not a word; give one");
+    }
+    return found->string();
+}
+
+Result<Size> YamlMap::size(const char* key) const {
+    const auto sides = numbers(key, 2, 2);
+    if (!sides) {
+        return sides.error();
+    }
+    for (const double side : *sides) {
+        if (side != std::floor(side) || side < 1.0 || side > kMaxImageSide_px) {
+            return error(key, "is out of range; give [width, height], each from 1 to " +
+                                  std::to_string(kMaxImageSide_px));
+        }
+    }
+    return Size{static_cast<int>((*sides)[0]), static_cast<int>((*sides)[1])};
+}
+
+Result<std::vector<double>> YamlMap::numbers(const char* key, std::size_t least,
+                                             std::size_t most) const {
+    auto found = find(key);
+    if (!found) {
+        return found.error();
+    }
+    const cv::FileNode list = found->isMap() ? (*found)["data"] : *found;
+    const std::string count = least == most ? std::to_string(most)
+                                            : std::to_string(least) + " to " + std::to_string(most);
+    if (!list.isSeq() || list.size() < least || list.size() > most) {
+        return error(key, "does not hold " + count + " numbers; give them row by row");
+    }
+    std::vector<double> values;
+    values.reserve(list.size());
+    for (const cv::FileNode& entry : list) {
+        if (!entry.isInt() && !entry.isReal()) {
+            return error(key, "holds something that is not a number; give " + count + " numbers");
+        }
+        if (!std::isfinite(entry.real())) {
+            return error(key, "holds NaN or infinity; give finite numbers");
+        }
+        values.push_back(entry.real());
+    }
+    return values;
+}
+
+Result<std::vector<YamlMap>> YamlMap::maps(const char* key, std::size_t most) const {
+    auto found = find(key);
+    if (!found) {
+        return found.error();
+    }
+    if (!found->isSeq() || found->size() == 0 || found->size() > most) {
+        return error(key, "is not a list of 1 to " + std::to_string(most) + " entries; give one");
+    }
+    std::vector<YamlMap> entries;
+    entries.reserve(found->size());
+    for (const cv::FileNode& entry : *found) {
+        const std::string field = prefix_ + key + "[" + std::to_string(entries.size()) + "]";
+        if (!entry.isMap()) {
+            return Error{ErrorCode::malformed,
+                         name_ + ": " + field + " is not { kind: ..., ... }; write it so"};
+        }
+        entries.emplace_back(entry, name_, field + ".");
+    }
+    return entries;
+}
+
+}  // namespace xtrack::capture

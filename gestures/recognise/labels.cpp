@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <xtrack/labels.hpp>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "core/base/csv.hpp"
+#include "core/base/file.hpp"
+
+namespace xtrack {
+
+namespace {
+
+constexpr std::size_t kMaxFileBytes = std::size_t{64} << 20U;
+constexpr base::CsvLimits kLimits{4096, 1'000'000, 128};
+constexpr std::size_t kMaxNameLength = 64;
+constexpr std::int64_t kMaxTime_us = std::int64_t{100} * 366 * 24 * 3600 * 1'000'000;
+constexpr double kMaxPosition_mm = 1e5;
+constexpr std::int64_t kMaxFrames = 1'000'000;
+constexpr const char* kFingers[kFingerCount] = {"thumb", "index", "middle", "ring", "little"};
+
+bool is_word(std::string_view text) {
+    return text.size() <= kMaxNameLength && std::all_of(text.begin(), text.end(), [](char c) {
+               return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                      c == '_' || c == '-';
+           });
+}
+
+Result<Chirality> read_hand(const base::CsvReader& csv, std::size_t column) {
+    const std::string_view side = csv.field(column);
+    if (side == "left") {
+        return Chirality::left;
+    }
+    if (side == "right") {
+        return Chirality::right;
+    }
+    if (side == "unknown") {
+        return Chirality::unknown;
+    }
+    return csv.error_at(column, "give left, right or unknown");
+}
+
+Result<Stamp> read_stamp(const base::CsvReader& csv, std::size_t column) {
+    const auto t_us = csv.int_field(column, -kMaxTime_us, kMaxTime_us);
+    if (!t_us) {
+        return t_us.error();
+    }
+    return Stamp::from_us(*t_us);
+}
+
+// Opens the text, finds `names` in its header, and calls `read` for every row.
+template <typename T, std::size_t kCount, typename Read>
+Result<std::vector<T>> read_rows(std::string_view text, const std::string& name,
+                                 const char* const (&names)[kCount], const Read& read) {
+    auto csv = base::CsvReader::open(text, name, kLimits);
+    if (!csv) {
+        return csv.error();
+    }
+    std::array<std::size_t, kCount> columns{};
+    for (std::size_t i = 0; i < kCount; ++i) {
+        const auto found = csv->required_column(names[i]);
+        if (!found) {
+            return found.error();
+        }
+        columns[i] = *found;
+    }
+    std::vector<T> rows;
+    while (true) {
+        const auto more = csv->next();
+        if (!more) {
+            return more.error();
+        }
+        if (!*more) {
+            return rows;
+        }
+        auto row = read(*csv, columns);
+        if (!row) {
+            return row.error();
+        }
+        rows.push_back(std::move(*row));
+    }
+}
+
+template <typename T>
+Result<T> read_whole(const std::filesystem::path& file,
+                     Result<T> (*parse)(std::string_view, const std::string&)) {
+    const auto text = base::read_file(file, kMaxFileBytes);
+    if (!text) {
+        return text.error();
+    }
+    return parse(*text, file.string());
+}
+
+Result<TrackedPoint> read_point(const base::CsvReader& csv, const std::string& name) {
+    TrackedPoint point;
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        const auto column = csv.column(name + "_" + "xyz"[axis]);
+        if (!column || csv.field(*column).empty()) {
+            return TrackedPoint{};
+        }
+        const auto value = csv.number_field(*column, -kMaxPosition_mm, kMaxPosition_mm);
+        if (!value) {
+            return value.error();
+        }
+        point.position_mm[axis] = static_cast<float>(*value);
+    }
+    point.valid = true;
+    return point;
+}
+
+Result<GestureLabel> read_label(const base::CsvReader& csv,
+                                const std::array<std::size_t, 4>& columns) {
+    GestureLabel label;
+    label.gesture = std::string(csv.field(columns[0]));
+    if (label.gesture.empty() || !is_word(label.gesture)) {
+        return csv.error_at(columns[0], "give a name such as swipe_left");
+    }
+    const auto hand = read_hand(csv, columns[1]);
+    if (!hand) {
+        return hand.error();
+    }
+    const auto start = read_stamp(csv, columns[2]);
+    if (!start) {
+        return start.error();
+    }
+    const auto end = read_stamp(csv, columns[3]);
+    if (!end) {
+        return end.error();
+    }
+    if (*end < *start) {
+        return csv.error_at(columns[3], "it lies before start_us, swap them");
+    }
+    label.hand = *hand;
+    label.start = *start;
+    label.end = *end;
+    const auto commit_column = csv.column("commit_us");
+    if (commit_column && !csv.field(*commit_column).empty()) {
+        const auto commit = read_stamp(csv, *commit_column);
+        if (!commit) {
+            return commit.error();
+        }
+        label.commit = *commit;
+    }
+    return label;
+}
+
+Result<PoseLabel> read_pose(const base::CsvReader& csv, const std::array<std::size_t, 4>& columns) {
+    PoseLabel label;
+    const auto frame = csv.int_field(columns[0], 0, kMaxFrames);
+    if (!frame) {
+        return frame.error();
+    }
+    label.frame = static_cast<std::size_t>(*frame);
+    label.pose = std::string(csv.field(columns[1]));
+    if (!is_word(label.pose)) {
+        return csv.error_at(columns[1], "give a name such as open_palm, or nothing");
+    }
+    if (!csv.field(columns[2]).empty()) {
+        const auto fingers = csv.int_field(columns[2], 0, static_cast<int>(kFingerCount));
+        if (!fingers) {
+            return fingers.error();
+        }
+        label.extended_fingers = static_cast<int>(*fingers);
+    }
+    const auto present = csv.int_field(columns[3], 0, 1);
+    if (!present) {
+        return present.error();
+    }
+    label.hand_present = *present == 1;
+    return label;
+}
+
+Result<HandTruth> read_truth_row(const base::CsvReader& csv,
+                                 const std::array<std::size_t, 5>& columns) {
+    HandTruth truth;
+    const auto stamp = read_stamp(csv, columns[0]);
+    if (!stamp) {
+        return stamp.error();
+    }
+    const auto hand = read_hand(csv, columns[1]);
+    if (!hand) {
+        return hand.error();
+    }
+    truth.stamp = *stamp;
+    truth.hand = *hand;
+    const auto palm = read_point(csv, "palm");
+    if (!palm) {
+        return palm.error();
+    }
+    truth.palm = *palm;
+    for (std::size_t finger = 0; finger < kFingerCount; ++finger) {
+        const std::string name = kFingers[finger];
+        const auto tip = read_point(csv, name + "_tip");
+        if (!tip) {
+            return tip.error();
+        }
+        const auto pad = read_point(csv, name + "_pad");
+        if (!pad) {
+            return pad.error();
+        }
+        truth.tips[finger] = *tip;
+        truth.pads[finger] = *pad;
+    }
+    const auto pinch_column = csv.column("pinch_mm");
+    if (pinch_column && !csv.field(*pinch_column).empty()) {
+        const auto pinch = csv.number_field(*pinch_column, 0.0, kMaxPosition_mm);
+        if (!pinch) {
+            return pinch.error();
+        }
+        truth.pinch_mm = static_cast<float>(*pinch);
+    }
+    return truth;
+}
+
+std::string point_text(const TrackedPoint& point) {
+    if (!point.valid) {
+        return ",,,";
+    }
+    char text[128];
+    std::snprintf(text, sizeof text, ",%.2f,%.2f,%.2f", static_cast<double>(point.position_mm.x()),
+                  static_cast<double>(point.position_mm.y()),
+                  static_cast<double>(point.position_mm.z()));
+    return text;
+}
+
+}  // namespace
+
+Result<std::vector<GestureLabel>> parse_labels(std::string_view text, const std::string& name) {
+    return read_rows<GestureLabel>(text, name, {"gesture", "hand", "start_us", "end_us"},
+                                   read_label);
+}
+
+Result<std::vector<PoseLabel>> parse_poses(std::string_view text, const std::string& name) {
+    return read_rows<PoseLabel>(text, name, {"frame", "pose", "extended_fingers", "hand_present"},
+                                read_pose);
+}
+
+Result<std::vector<HandTruth>> parse_hand_truth(std::string_view text, const std::string& name) {
+    std::optional<Stamp> before;
+    return read_rows<HandTruth>(
+        text, name, {"t_us", "hand", "palm_x", "palm_y", "palm_z"},
+        [&before](const base::CsvReader& csv,
+                  const std::array<std::size_t, 5>& columns) -> Result<HandTruth> {
+            auto truth = read_truth_row(csv, columns);
+            if (truth) {
+                if (before && truth->stamp < *before) {
+                    return csv.error_at(columns[0], "time goes backwards, sort the rows by t_us");
+                }
+                before = truth->stamp;
+            }
+            return truth;
+        });
+}
+
+Result<std::vector<GestureLabel>> read_labels(const std::filesystem::path& file) {
+    return read_whole(file, &parse_labels);
+}
+
+Result<std::vector<PoseLabel>> read_poses(const std::filesystem::path& file) {
+    return read_whole(file, &parse_poses);
+}
+
+Result<std::vector<HandTruth>> read_hand_truth(const std::filesystem::path& file) {
+    return read_whole(file, &parse_hand_truth);
+}
+
+std::string labels_text(std::span<const GestureLabel> labels) {
+    const bool commits = std::any_of(labels.begin(), labels.end(),
+                                     [](const GestureLabel& l) { return l.commit.has_value(); });
+    std::string text =
+        std::string("gesture,hand,start_us,end_us") + (commits ? ",commit_us" : "") + "\n";
+    for (const GestureLabel& l : labels) {
+        text += l.gesture + "," + to_string(l.hand) + "," + std::to_string(l.start.us()) + "," +
+                std::to_string(l.end.us());
+        if (commits) {
+            text += "," + (l.commit ? std::to_string(l.commit->us()) : std::string());
+        }
+        text += '\n';
+    }
+    return text;
+}
+
+std::string hand_truth_text(std::span<const HandTruth> truth) {
+    std::string text = "t_us,hand,palm_x,palm_y,palm_z";
+    for (const char* finger : kFingers) {
+        for (const char* part : {"_tip", "_pad"}) {
+            for (const char axis : {'x', 'y', 'z'}) {
+                text += std::string(",") + finger + part + "_" + axis;
+            }
+        }
+    }
+    text += ",pinch_mm\n";
+    for (const HandTruth& t : truth) {
+        text += std::to_string(t.stamp.us()) + "," + to_string(t.hand) + point_text(t.palm);
+        for (std::size_t finger = 0; finger < kFingerCount; ++finger) {
+            text += point_text(t.tips[finger]) + point_text(t.pads[finger]);
+        }
+        char pinch[32] = "";
+        if (t.pinch_mm >= 0.0F) {
+            std::snprintf(pinch, sizeof pinch, "%.2f", static_cast<double>(t.pinch_mm));
+        }
+        text += std::string(",") + pinch + "\n";
+    }
+    return text;
+}
+
+Result<void> write_labels(const std::filesystem::path& file, std::span<const GestureLabel> labels) {
+    return base::write_file(file, labels_text(labels));
+}
+
+}  // namespace xtrack
