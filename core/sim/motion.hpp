@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <xtrack/sim.hpp>
+
+#include "core/sim/hand_model.hpp"
+#include "core/sim/hand_pose.hpp"
+
+namespace xtrack::sim {
+
+/// x(t) of N values that move from target to target with the least jerk (Flash, Hogan 1985).
+template <std::size_t N>
+class Track {
+ public:
+    using Value = std::array<float, N>;
+    explicit Track(const Value& start) : start_(start) {}
+
+    /// Moves to `target` between the two times; moves must not overlap.
+    void move(double start_s, double end_s, const Value& target) {
+        moves_.push_back({start_s, end_s, target});
+    }
+    [[nodiscard]] const Value& target() const {
+        return moves_.empty() ? start_ : moves_.back().target;
+    }
+    [[nodiscard]] Value at(double t_s) const {
+        // Binary search: scripts are long, frames many.
+        std::size_t low = 0;
+        std::size_t high = moves_.size();
+        while (low < high) {
+            const std::size_t middle = (low + high) / 2;
+            (moves_[middle].start_s <= t_s ? low : high) =
+                moves_[middle].start_s <= t_s ? middle + 1 : middle;
+        }
+        if (low == 0) {
+            return start_;
+        }
+        const Move& move = moves_[low - 1];
+        const Value& from = low == 1 ? start_ : moves_[low - 2].target;
+        const double u = (t_s - move.start_s) / (move.end_s - move.start_s);
+        if (u >= 1.0) {
+            return move.target;
+        }
+        const auto s = static_cast<float>(u * u * u * (10.0 + u * (-15.0 + 6.0 * u)));
+        Value value{};
+        for (std::size_t i = 0; i < N; ++i) {
+            value[i] = from[i] + (move.target[i] - from[i]) * s;
+        }
+        return value;
+    }
+
+ private:
+    struct Move {
+        double start_s;
+        double end_s;
+        Value target;
+    };
+    Value start_;
+    std::vector<Move> moves_;
+};
+
+/// All that one hand does, from its first to its last moment.
+class HandMotion {
+ public:
+    HandMotion(const SimSettings& settings, SimHand hand, const HandModel& model);
+
+    [[nodiscard]] SimHand hand() const noexcept { return hand_; }
+    [[nodiscard]] HandPose at(double t_s) const;
+    /// When the script of this hand is over, s.
+    [[nodiscard]] double end_s() const noexcept { return clock_s_; }
+    [[nodiscard]] const std::vector<SimLabel>& labels() const noexcept { return labels_; }
+
+ private:
+    class Planner;
+    struct Wave {
+        float amplitude = 0.0F;
+        float rad_per_s = 0.0F;
+        float phase_rad = 0.0F;
+    };
+    static constexpr std::size_t kWaves = 4;
+    static constexpr std::size_t kWaveChannels = 7;  // place, turns, fingers together
+
+    [[nodiscard]] float sway(std::size_t channel, double t_s) const;
+    void plan_sway(std::uint64_t seed);
+
+    SimHand hand_;
+    Vec3f shoulder_mm_ = Vec3f::Zero();
+    double clock_s_ = 0.0;
+    Track<3> place_;     ///< palm, camera frame, mm
+    Track<3> turn_;      ///< rad
+    Track<20> fingers_;  ///< FingerAngles
+    std::array<std::array<Wave, kWaves>, kWaveChannels> waves_{};
+    std::vector<SimLabel> labels_;
+};
+
+}  // namespace xtrack::sim
