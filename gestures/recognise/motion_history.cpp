@@ -45,6 +45,13 @@ MotionSample sample_of(const Hand& hand, Stamp stamp) noexcept {
         middle.position_mm.allFinite()) {
         s.thumb_to_middle_mm = (thumb.position_mm - middle.position_mm).norm();
     }
+    const TrackedPoint& knuckle = hand.joint(Joint::index_proximal);
+    s.knuckle_known = knuckle.valid && knuckle.position_mm.allFinite() && s.index_tip_known &&
+                      thumb.valid && thumb.position_mm.allFinite();
+    if (s.knuckle_known) {
+        s.thumb_from_knuckle_mm = thumb.position_mm - knuckle.position_mm;
+        s.index_from_knuckle_mm = index.position_mm - knuckle.position_mm;
+    }
     return s;
 }
 

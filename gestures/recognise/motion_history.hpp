@@ -27,6 +27,10 @@ struct MotionSample {
     float aperture_mm = -1.0F;     ///< thumb tip to index tip; -1 = unknown
     float hand_length_mm = 0.0F;   ///< 0 = unknown
     std::array<float, kFingerCount> extension{-1.0F, -1.0F, -1.0F, -1.0F, -1.0F};
+    /// Thumb and index tip as seen from the index knuckle, so that the arm's motion drops out.
+    Vec3f thumb_from_knuckle_mm = Vec3f::Zero();
+    Vec3f index_from_knuckle_mm = Vec3f::Zero();
+    bool knuckle_known = false;
     float thumb_to_middle_mm = -1.0F;  ///< tips; -1 = unknown
 
     /// Mean extension of middle, ring and little finger; -1 where none is known.

@@ -27,6 +27,7 @@ constexpr Duration kApertureWindow = std::chrono::milliseconds{40};
 constexpr Duration kPoseWindow = std::chrono::milliseconds{300};
 // An aperture that is not known for so long is a finger that is lost.
 constexpr Duration kApertureLost = std::chrono::milliseconds{120};
+constexpr double kSmallestWayMm = 1.0;
 constexpr double kCapShare = 1.25;  // of pinch_close_mm: a hand length may be measured badly
 
 double aperture_of(const MotionHistory& history) {
@@ -40,6 +41,52 @@ double aperture_of(const MotionHistory& history) {
         }
     }
     return n > 0 ? sum / n : -1.0;
+}
+
+class Mean {
+ public:
+    void add(double value) {
+        sum_ += value;
+        ++count_;
+    }
+    /// -1 where nothing was known; everything averaged here is positive.
+    [[nodiscard]] double value() const { return count_ > 0 ? sum_ / count_ : -1.0; }
+
+ private:
+    double sum_ = 0.0;
+    int count_ = 0;
+};
+
+/// The hand before the fingers closed.
+struct Before {
+    std::array<Mean, kFingerCount> extension;
+    Mean thumb_to_middle_mm;
+    const MotionSample* open = nullptr;  ///< the last moment they were apart
+};
+
+Before look_back(const MotionHistory& history, Stamp open_at) {
+    Before before;
+    for (std::size_t i = 0; i < history.size(); ++i) {
+        const MotionSample& past = history.at(i);
+        if (past.stamp > open_at) {
+            continue;
+        }
+        if (open_at - past.stamp > kPoseWindow) {
+            break;
+        }
+        if (before.open == nullptr) {
+            before.open = &past;
+        }
+        for (std::size_t f = 0; f < kFingerCount; ++f) {
+            if (past.extension[f] >= 0.0F) {
+                before.extension[f].add(static_cast<double>(past.extension[f]));
+            }
+        }
+        if (past.thumb_to_middle_mm >= 0.0F) {
+            before.thumb_to_middle_mm.add(static_cast<double>(past.thumb_to_middle_mm));
+        }
+    }
+    return before;
 }
 
 double close_mm(const Context& c) {
@@ -230,12 +277,10 @@ PinchMachine::Event PinchMachine::judge(const Context& c, double aperture_mm,
         if (state_ == State::pinched) {
             return Event::closed;
         }
-        refusal = spoiler(c);
-        if (*refusal.why != '\0') {
-            return Event::spoilt;
-        }
         const double held_ms = to_ms(c.sensor - closed_at_);
-        if (held_ms < s.pinch_hold_ms) {
+        // A graze that opens again is inside the hysteresis, but on its way out.
+        const double inner_mm = 0.5 * (s.pinch_close_mm + s.pinch_release_mm);
+        if (held_ms < s.pinch_hold_ms || aperture_mm > inner_mm) {
             return Event::closed;
         }
         if (c.gate == Gate::entering) {
@@ -246,9 +291,10 @@ PinchMachine::Event PinchMachine::judge(const Context& c, double aperture_mm,
             static_cast<double>(c.history.velocity(from_ms(s.velocity_window_ms)).norm());
         if (palm_mmps > s.pinch_palm_mmps) {
             refusal = {"the palm moves", palm_mmps, s.pinch_palm_mmps};
-            return Event::closed;
+            return held_ms > s.pinch_settle_ms ? Event::spoilt : Event::closed;
         }
-        return Event::held;
+        refusal = spoiler(c);
+        return *refusal.why == '\0' ? Event::held : Event::spoilt;
     }
     if (aperture_mm >= s.pinch_open_mm) {
         return Event::opened;
@@ -263,29 +309,36 @@ PinchMachine::Event PinchMachine::judge(const Context& c, double aperture_mm,
 Refusal PinchMachine::spoiler(const Context& c) const {
     const GestureSettings& s = c.settings;
     const MotionSample& now = c.history.newest();
+    const Before before = look_back(c.history, open_at_);
+
     for (const Finger finger : {Finger::middle, Finger::ring, Finger::little}) {
         const auto f = static_cast<std::size_t>(finger);
-        double before = 0.0;
-        int n = 0;
-        for (std::size_t i = 0; i < c.history.size(); ++i) {
-            const MotionSample& past = c.history.at(i);
-            if (past.stamp > open_at_) {
-                continue;
-            }
-            if (open_at_ - past.stamp > kPoseWindow) {
-                break;
-            }
-            if (past.extension[f] >= 0.0F) {
-                before += static_cast<double>(past.extension[f]);
-                ++n;
-            }
-        }
-        if (n == 0 || now.extension[f] < 0.0F) {
+        const double was = before.extension[f].value();
+        if (was < 0.0 || now.extension[f] < 0.0F) {
             continue;
         }
-        const double folded = before / n - static_cast<double>(now.extension[f]);
+        const double folded = was - static_cast<double>(now.extension[f]);
         if (folded > s.pinch_others_fold) {
             return {"another finger folds with it", folded, s.pinch_others_fold};
+        }
+    }
+    const double free_mm = before.thumb_to_middle_mm.value();
+    if (free_mm >= 0.0 && free_mm < s.pinch_thumb_free_mm) {
+        return {"the thumb was not free", free_mm, s.pinch_thumb_free_mm};
+    }
+    const double bunch_mm = static_cast<double>(now.thumb_to_middle_mm);
+    const double outer = static_cast<double>(now.outer_extension());
+    if (bunch_mm >= 0.0 && bunch_mm <= s.pinch_bunch_mm && outer > s.pinch_bunch_extension) {
+        return {"all fingertips together", outer, s.pinch_bunch_extension};
+    }
+    if (now.knuckle_known && before.open != nullptr && before.open->knuckle_known) {
+        const double thumb_mm = static_cast<double>(
+            (now.thumb_from_knuckle_mm - before.open->thumb_from_knuckle_mm).norm());
+        const double index_mm = static_cast<double>(
+            (now.index_from_knuckle_mm - before.open->index_from_knuckle_mm).norm());
+        const double share = index_mm / std::max(thumb_mm + index_mm, kSmallestWayMm);
+        if (share < s.pinch_index_share) {
+            return {"the index stays", share, s.pinch_index_share};
         }
     }
     return {};

@@ -20,6 +20,7 @@ namespace {
 constexpr float kConfidenceFloor = 0.5F;
 // The window holds whole frames only; this much of it must be covered.
 constexpr double kCoverShare = 0.75;
+constexpr Duration kThrustBefore = std::chrono::milliseconds{300};
 
 double angle_deg(const Vec3f& a, const Vec3f& b) {
     const double norms = static_cast<double>(a.norm()) * static_cast<double>(b.norm());
@@ -147,7 +148,18 @@ PushMachine::Thrust PushMachine::measure(const Context& c) const {
         t.limit = s.push_cone_deg;
         return t;
     }
-    const Vec3f before = c.history.velocity(from_ms(s.velocity_window_ms), first);
+    // The thrust may have begun before the window; what came before *it* tells a push from a hand
+    // that is raised and reaches out.
+    std::size_t start = first;
+    while (start + 1 < c.history.size() &&
+           then.stamp - c.history.at(start + 1).stamp <= kThrustBefore &&
+           static_cast<double>(
+               c.history.velocity(from_ms(s.velocity_window_ms), start).dot(toward_screen)) >
+               s.push_stable_mmps) {
+        ++start;
+    }
+    t.start = c.history.at(start).stamp;
+    const Vec3f before = c.history.velocity(from_ms(s.velocity_window_ms), start);
     const double turned_deg = angle_deg(before, moved);
     if (static_cast<double>(before.norm()) > s.push_stable_mmps && turned_deg < s.push_turn_deg) {
         t.why_not = "goes on with the motion before";

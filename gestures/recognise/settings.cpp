@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <xtrack/gesture_settings.hpp>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -26,6 +27,7 @@ constexpr std::array kRanges{
     Range{"entry_lockout_ms", &S::entry_lockout_ms, 0.0, 2000.0},
     Range{"velocity_window_ms", &S::velocity_window_ms, 60.0, 200.0},
     Range{"swipe_speed_mmps", &S::swipe_speed_mmps, 100.0, 3000.0},
+    Range{"swipe_paddle_speed_mmps", &S::swipe_paddle_speed_mmps, 100.0, 3000.0},
     Range{"swipe_length_mm", &S::swipe_length_mm, 40.0, 600.0},
     Range{"swipe_dies_mmps", &S::swipe_dies_mmps, 50.0, 1000.0},
     Range{"swipe_horizontal_deg", &S::swipe_horizontal_deg, 5.0, 44.0},
@@ -38,6 +40,8 @@ constexpr std::array kRanges{
     Range{"swipe_return_memory_ms", &S::swipe_return_memory_ms, 0.0, 5000.0},
     Range{"swipe_return_share", &S::swipe_return_share, 0.0, 1.0},
     Range{"swipe_facing", &S::swipe_facing, 0.1, 1.0},
+    Range{"swipe_back_speed_mmps", &S::swipe_back_speed_mmps, 100.0, 3000.0},
+    Range{"swipe_back_length_mm", &S::swipe_back_length_mm, 40.0, 600.0},
     Range{"swipe_carried_speed_mmps", &S::swipe_carried_speed_mmps, 100.0, 3000.0},
     Range{"swipe_carried_length_mm", &S::swipe_carried_length_mm, 40.0, 600.0},
     Range{"swipe_pointing_extension", &S::swipe_pointing_extension, 0.0, 1.0},
@@ -45,7 +49,7 @@ constexpr std::array kRanges{
     Range{"push_speed_mmps", &S::push_speed_mmps, 100.0, 3000.0},
     Range{"push_window_ms", &S::push_window_ms, 100.0, 600.0},
     Range{"push_cone_deg", &S::push_cone_deg, 5.0, 60.0},
-    Range{"push_turn_deg", &S::push_turn_deg, 0.0, 90.0},
+    Range{"push_turn_deg", &S::push_turn_deg, 0.0, 180.0},
     Range{"push_stable_mmps", &S::push_stable_mmps, 20.0, 500.0},
     Range{"push_stable_ms", &S::push_stable_ms, 0.0, 2000.0},
     Range{"push_facing", &S::push_facing, 0.0, 1.0},
@@ -57,7 +61,12 @@ constexpr std::array kRanges{
     Range{"pinch_open_mm", &S::pinch_open_mm, 20.0, 120.0},
     Range{"pinch_approach_ms", &S::pinch_approach_ms, 50.0, 3000.0},
     Range{"pinch_palm_mmps", &S::pinch_palm_mmps, 20.0, 1000.0},
+    Range{"pinch_settle_ms", &S::pinch_settle_ms, 0.0, 5000.0},
     Range{"pinch_others_fold", &S::pinch_others_fold, 0.05, 1.0},
+    Range{"pinch_thumb_free_mm", &S::pinch_thumb_free_mm, 0.0, 100.0},
+    Range{"pinch_bunch_mm", &S::pinch_bunch_mm, 0.0, 60.0},
+    Range{"pinch_bunch_extension", &S::pinch_bunch_extension, 0.0, 1.0},
+    Range{"pinch_index_share", &S::pinch_index_share, 0.0, 0.9},
 };
 
 std::string text(double value) {
@@ -98,9 +107,11 @@ Result<void> validate(const GestureSettings& s) {
         return refuse("gone_ms is " + text(s.gone_ms) + "; give at least lost_freeze_ms, " +
                       text(s.lost_freeze_ms));
     }
-    if (s.swipe_speed_mmps < s.swipe_dies_mmps || s.swipe_rest_mmps >= s.swipe_dies_mmps) {
+    if (std::min(s.swipe_speed_mmps, s.swipe_paddle_speed_mmps) < s.swipe_dies_mmps ||
+        s.swipe_rest_mmps >= s.swipe_dies_mmps) {
         return refuse("swipe_dies_mmps is " + text(s.swipe_dies_mmps) +
-                      "; give more than swipe_rest_mmps and at most swipe_speed_mmps");
+                      "; give more than swipe_rest_mmps and at most swipe_speed_mmps and "
+                      "swipe_paddle_speed_mmps");
     }
     return {};
 }

@@ -189,12 +189,17 @@ SwipeMachine::Event SwipeMachine::judge(const Context& c, const Vec3f& velocity,
     if (state_ == State::coasting) {
         last_peak_mmps_ = std::max(last_peak_mmps_, along_mmps);
     }
-    if (static_cast<double>(along_mmps) < s.swipe_dies_mmps) {
+    const bool slow = static_cast<double>(along_mmps) < s.swipe_dies_mmps;
+    if (slow) {
         refusal = {"too slow", static_cast<double>(along_mmps), s.swipe_dies_mmps};
-        return Event::slow;
     }
     if (state_ == State::coasting) {
-        return Event::moving;
+        return slow ? Event::slow : Event::moving;
+    }
+    // A stroke that turns a corner is slow along its axis only.
+    const bool stops = static_cast<double>(velocity.norm()) < s.swipe_dies_mmps;
+    if (slow && !stops) {
+        return Event::slow;
     }
     const MotionSample& now = c.history.newest();
     const Vec3f moved = now.palm_mm - stroke_.palm_mm;
@@ -211,13 +216,18 @@ SwipeMachine::Event SwipeMachine::judge(const Context& c, const Vec3f& velocity,
     stroke_.length_mm = length_mm;
     stroke_.speed_mmps = lasted_s > 0.0 ? length_mm / lasted_s : 0.0;
     if (length_mm < s.swipe_length_mm) {
-        return Event::moving;
+        return slow ? Event::slow : Event::moving;
     }
-    refusal = objection(c);
-    return *refusal.why == '\0' ? Event::far_enough : Event::moving;
+    const Refusal reason = objection(c, stops);
+    if (*reason.why == '\0') {
+        refusal = {};
+        return Event::far_enough;
+    }
+    refusal = reason;
+    return slow ? Event::slow : Event::moving;
 }
 
-Refusal SwipeMachine::objection(const Context& c) const {
+Refusal SwipeMachine::objection(const Context& c, bool stops) const {
     const GestureSettings& s = c.settings;
     const MotionSample& now = c.history.newest();
     const Vec3f axis = axis_of(stroke_.direction);
@@ -261,20 +271,34 @@ Refusal SwipeMachine::objection(const Context& c) const {
         shown = std::abs(shown);
     }
     const bool points = outer_known > 0 && outer / outer_known < s.swipe_pointing_extension;
-    // A hand that drops does so with the palm down, so that leading says nothing there.
-    const bool paddle = leads >= s.swipe_facing && stroke_.direction != Direction::down;
-    const bool intended = !points && (!facing_known || paddle || shown >= kShownFacing);
-    const double least_mm = intended ? s.swipe_length_mm : s.swipe_carried_length_mm;
-    const double least_mmps = intended ? s.swipe_speed_mmps : s.swipe_carried_speed_mmps;
+    // Sideways a palm leads or shows itself to the screen on purpose; up and down it does so
+    // whenever a hand is raised or dropped, so that there nothing is learnt from it.
+    const bool tells = horizontal(stroke_.direction);
+    const bool paddle = tells && !points && leads >= s.swipe_facing;
+    const bool shows = tells && !points && shown >= kShownFacing;
+    const bool back = tells && !points && leads <= -s.swipe_facing;
+    const bool carried = points || (facing_known && !paddle && !shows && !back);
+    const double least_mm = carried ? s.swipe_carried_length_mm
+                            : back  ? s.swipe_back_length_mm
+                                    : s.swipe_length_mm;
+    const double least_mmps = carried  ? s.swipe_carried_speed_mmps
+                              : back   ? s.swipe_back_speed_mmps
+                              : paddle ? s.swipe_paddle_speed_mmps
+                                       : s.swipe_speed_mmps;
     if (stroke_.length_mm < least_mm) {
-        return {points ? "short for a pointing hand" : "short for a carried hand",
+        return {points    ? "short for a pointing hand"
+                : carried ? "short for a carried hand"
+                          : "short",
                 stroke_.length_mm, least_mm};
     }
     if (stroke_.speed_mmps < least_mmps) {
-        return {points     ? "slow for a pointing hand"
-                : intended ? "slow"
-                           : "slow for a carried hand",
+        return {points    ? "slow for a pointing hand"
+                : carried ? "slow for a carried hand"
+                          : "slow",
                 stroke_.speed_mmps, least_mmps};
+    }
+    if (carried && !stops) {
+        return {"may turn a corner yet", 0.0, 0.0};
     }
 
     if (committed_before_ && opposite(stroke_.direction, last_.direction)) {

@@ -36,7 +36,7 @@ class SwipeMachine {
     State coasting(const Context& c, Event event, bool& possible);
 
     [[nodiscard]] Event judge(const Context& c, const Vec3f& velocity, Refusal& refusal);
-    [[nodiscard]] Refusal objection(const Context& c) const;
+    [[nodiscard]] Refusal objection(const Context& c, bool stops) const;
     void begin_stroke(const Context& c, Direction direction);
     void commit(const Context& c);
     void note_rest(const Context& c, const Vec3f& velocity);

@@ -28,8 +28,11 @@ struct GestureSettings {
     double velocity_window_ms = 100.0;
 
     // --- swipe -----------------------------------------------------------------------------------
-    /// Mean over the stroke, hand held like a paddle. 100..3000. NiTE1 250, TouchFree 625.
-    double swipe_speed_mmps = 270.0;
+    /// Mean over the stroke. 100..3000. NiTE1 250, TouchFree 625.
+    double swipe_speed_mmps = 300.0;
+    /// The same where joints show that the palm leads the motion like a paddle, which nobody does
+    /// by chance. 100..3000. NiTE1.
+    double swipe_paddle_speed_mmps = 250.0;
     /// Length at which it commits. 40..600. TouchFree.
     double swipe_length_mm = 100.0;
     /// The candidate dies below it, and none begins. 50..1000; above three sigma of the velocity of
@@ -55,6 +58,10 @@ struct GestureSettings {
     /// The hand's flat side leads when palm direction . motion is above it. 0.1..1. Measured on
     /// joints: swipes 0.6..1.0, hands carried from place to place -0.3..0.4.
     double swipe_facing = 0.5;
+    /// The back of the hand leads on the way back too, so more is asked. 100..3000; 40..600.
+    /// Measured: returns 230..340 mm/s.
+    double swipe_back_speed_mmps = 380.0;
+    double swipe_back_length_mm = 120.0;
     /// A hand that is merely carried (flat side not in front) or that points must move with this
     /// much more intent. 100..3000; 40..600. Measured: carried hands reach 390 mm/s over 180 mm.
     double swipe_carried_speed_mmps = 480.0;
@@ -66,13 +73,15 @@ struct GestureSettings {
     double swipe_tip_share = 0.5;
 
     // --- push ------------------------------------------------------------------------------------
-    /// Mean speed over the window. 100..3000; 100..600. NiTE1.
-    double push_speed_mmps = 330.0;
+    /// Mean speed over the window. 100..3000; 100..600. NiTE1 has 330; hands that reach out to
+    /// begin something else come to 350.
+    double push_speed_mmps = 370.0;
     double push_window_ms = 240.0;
     /// From the screen's normal. 5..60. NiTE1.
     double push_cone_deg = 30.0;
-    /// From the motion before. 0..90. NiTE1.
-    double push_turn_deg = 20.0;
+    /// From the motion before, if there was one. 0..180. NiTE1 has 20; a hand that is raised and
+    /// reaches out to begin something else turns by 40..90, one that winds up by more.
+    double push_turn_deg = 100.0;
     /// Slower for so long before the next. 20..500; 0..2000. NiTE1.
     double push_stable_mmps = 130.0;
     double push_stable_ms = 360.0;
@@ -88,16 +97,29 @@ struct GestureSettings {
     double pinch_release_mm = 30.0;
     /// Standard deviation of the aperture, for the hysteresis. 0..20. Measured: 2 to 3 mm.
     double pinch_noise_mm = 3.0;
-    /// Closed for so long. 0..1000. LeapC.
-    double pinch_hold_ms = 50.0;
+    /// Closed for so long. 0..1000. LeapC has 50; hands in motion touch by chance for 50 to 100.
+    double pinch_hold_ms = 80.0;
     /// The approach: seen open by so much, at most so long before it closes. 20..120; 50..3000.
     double pinch_open_mm = 40.0;
     double pinch_approach_ms = 600.0;
     /// Not while the palm moves faster. 20..1000. Measured: pinches begin at 5..120 mm/s.
     double pinch_palm_mmps = 150.0;
+    /// It must come to rest within so long of the touch. 0..5000. Measured: 0..250.
+    double pinch_settle_ms = 400.0;
     /// The three other fingers stay: one that folds by more in the approach makes a fist or a
-    /// number, no pinch. 0.05..1 of the extension.
-    double pinch_others_fold = 0.35;
+    /// number, no pinch. 0.05..1 of the extension. Measured: pinches 0..0.2, fists 0.3..0.6.
+    double pinch_others_fold = 0.25;
+    /// Before it the thumb stands free: thumb tip to middle tip. A thumb that rests on folded
+    /// fingers belongs to a pointing hand, whose index taps. 0..100. Measured: pinches 42 and
+    /// more, taps and letters drawn in the air 8..31.
+    double pinch_thumb_free_mm = 36.0;
+    /// All fingertips together with straight fingers are a bunch (to expand), no pinch: thumb tip
+    /// to middle tip under it, mean extension of the three others over it. 0..60; 0..1.
+    double pinch_bunch_mm = 20.0;
+    double pinch_bunch_extension = 0.68;
+    /// The index does its share of the way that brings the tips together. 0..0.9. Measured: pinches
+    /// 0.5..0.85, thumbs that fold in front of the palm 0.1..0.3.
+    double pinch_index_share = 0.25;
 };
 
 /// Checks every range and the relations between them.
