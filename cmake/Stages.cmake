@@ -14,11 +14,12 @@ set(XTRACK_HEADERS_core/pattern pattern_timeline)
 set(XTRACK_HEADERS_core/capture null_source recording)
 set(XTRACK_HEADERS_core/sim sim)
 set(XTRACK_HEADERS_core/decode decode_settings)
-set(XTRACK_HEADERS_core/pipeline decode_settings depth_decoder)
+set(XTRACK_HEADERS_core/pipeline depth_decoder)
 set(XTRACK_HEADERS_gestures/segment hand hand_region tracker_settings)
-set(XTRACK_HEADERS_gestures/track hand_source hand_tracker joint_recording one_euro_filter)
-set(XTRACK_HEADERS_gestures/recognise gesture_event gesture_recogniser gesture_settings
-    labels)
+set(XTRACK_HEADERS_gestures/track hand_source hand_tracker joint_recording
+                                one_euro_filter)
+set(XTRACK_HEADERS_gestures/recognise gesture_event gesture_recogniser gesture_settings labels
+                                    scoring)
 set(XTRACK_HEADERS_gestures/session session)
 
 # The only folders that may include headers of an operating system.
