@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <xtrack/scoring.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace xtrack {
+
+namespace {
+
+constexpr double kZ95 = 1.959963984540054;
+constexpr double kTail = 0.025;
+constexpr Duration kAfterLabel = std::chrono::milliseconds{200};
+constexpr double kSecondsAnHour = 3600.0;
+constexpr std::string_view kOkSign = "x_ok";
+
+/// P(X <= k) of a Poisson variable.
+double poisson_below(int k, double mean) {
+    double term = std::exp(-mean);
+    double sum = term;
+    for (int i = 1; i <= k; ++i) {
+        term *= mean / i;
+        sum += term;
+    }
+    return std::min(sum, 1.0);
+}
+
+/// The mean at which poisson_below(k) is `probability`, by bisection: it falls as the mean grows.
+double poisson_mean(int k, double probability) {
+    double low = 0.0;
+    double high = 20.0 + 2.0 * k + 10.0 * std::sqrt(static_cast<double>(k));
+    constexpr int kHalvings = 80;
+    for (int i = 0; i < kHalvings; ++i) {
+        const double middle = 0.5 * (low + high);
+        (poisson_below(k, middle) > probability ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+/// A gesture of a stream, from begin to its last event.
+struct Life {
+    GestureEvent begin;
+    Stamp last;
+    bool cancelled = false;
+};
+
+std::vector<Life> lives_of(std::span<const GestureEvent> events) {
+    std::vector<Life> lives;
+    for (const GestureEvent& e : events) {
+        if (e.type == GestureType::hand) {
+            continue;
+        }
+        if (e.phase == EventPhase::begin) {
+            lives.push_back({e, e.sensor, false});
+            continue;
+        }
+        const auto life = std::find_if(lives.rbegin(), lives.rend(), [&](const Life& l) {
+            return l.begin.gesture_id == e.gesture_id;
+        });
+        if (life != lives.rend()) {
+            life->last = e.sensor;
+            life->cancelled = life->cancelled || e.phase == EventPhase::cancel;
+        }
+    }
+    return lives;
+}
+
+bool same_gesture(const GestureLabel& label, const GestureEvent& event) {
+    return label.gesture == name_of(event) || label.gesture == to_string(event.type);
+}
+
+bool same_hand(const GestureLabel& label, const GestureEvent& event) {
+    return label.hand == Chirality::unknown || event.hand == Chirality::unknown ||
+           label.hand == event.hand;
+}
+
+bool inside(const GestureLabel& label, Stamp stamp) {
+    return label.start <= stamp && stamp <= label.end + kAfterLabel;
+}
+
+std::optional<std::size_t> find(std::span<const GestureLabel> labels,
+                                const std::vector<bool>& matched, auto&& wanted) {
+    std::optional<std::size_t> best;
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        // The one that ends first, so that a later event can still have the other.
+        if (!matched[i] && wanted(labels[i]) && (!best || labels[i].end < labels[*best].end)) {
+            best = i;
+        }
+    }
+    return best;
+}
+
+}  // namespace
+
+Estimate wilson(int successes, int trials) noexcept {
+    if (trials <= 0) {
+        return {0.0, 0.0, 1.0};
+    }
+    const double n = trials;
+    const double p = successes / n;
+    const double z2 = kZ95 * kZ95;
+    const double centre = (p + z2 / (2.0 * n)) / (1.0 + z2 / n);
+    const double half = kZ95 * std::sqrt(p * (1.0 - p) / n + z2 / (4.0 * n * n)) / (1.0 + z2 / n);
+    return {p, std::max(centre - half, 0.0), std::min(centre + half, 1.0)};
+}
+
+Estimate poisson(int events, double exposure) noexcept {
+    if (exposure <= 0.0) {
+        return {};
+    }
+    const double low = events > 0 ? poisson_mean(events - 1, 1.0 - kTail) : 0.0;
+    const double high = poisson_mean(events, kTail);
+    return {events / exposure, low / exposure, high / exposure};
+}
+
+double percentile(std::vector<double> values, double share) {
+    if (values.empty()) {
+        return std::numeric_limits<double>::quiet_NaN();
+    }
+    std::sort(values.begin(), values.end());
+    const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(values.size() - 1);
+    const auto below = static_cast<std::size_t>(at);
+    const std::size_t above = std::min(below + 1, values.size() - 1);
+    const double part = at - static_cast<double>(below);
+    return values[below] + part * (values[above] - values[below]);
+}
+
+const char* to_string(Verdict v) noexcept {
+    switch (v) {
+        case Verdict::correct: return "correct";
+        case Verdict::allowed: return "allowed";
+        case Verdict::wrong_hand: return "wrong hand";
+        case Verdict::overlap: return "overlap";
+        case Verdict::stray: return "stray";
+    }
+    return "unknown";
+}
+
+double GestureScore::jaccard() const noexcept {
+    const int all = labelled + false_events();  // correct + missed = labelled
+    return all > 0 ? static_cast<double>(correct) / all : 0.0;
+}
+
+void GestureScore::add(const GestureScore& o) {
+    labelled += o.labelled;
+    correct += o.correct;
+    allowed += o.allowed;
+    wrong_hand += o.wrong_hand;
+    overlapping += o.overlapping;
+    stray += o.stray;
+    cancelled += o.cancelled;
+    cancelled_in_label += o.cancelled_in_label;
+    from_start_ms.insert(from_start_ms.end(), o.from_start_ms.begin(), o.from_start_ms.end());
+    from_onset_ms.insert(from_onset_ms.end(), o.from_onset_ms.begin(), o.from_onset_ms.end());
+    from_end_ms.insert(from_end_ms.end(), o.from_end_ms.begin(), o.from_end_ms.end());
+}
+
+GestureScorer::GestureScorer(const GestureSettings& settings) {
+    if (settings.swipe) {
+        scored_ = {"swipe_left", "swipe_right", "swipe_up", "swipe_down"};
+    }
+    if (settings.push) {
+        scored_.emplace_back("push");
+    }
+    if (settings.pinch) {
+        scored_.emplace_back("pinch");
+    }
+}
+
+bool GestureScorer::scored(std::string_view name) const {
+    return std::find(scored_.begin(), scored_.end(), name) != scored_.end();
+}
+
+std::vector<JudgedEvent> GestureScorer::add(std::span<const GestureEvent> events,
+                                            std::span<const GestureLabel> labels, Duration length) {
+    const std::vector<Life> lives = lives_of(events);
+    std::vector<bool> matched(labels.size(), false);
+    std::vector<JudgedEvent> judged;
+    for (const GestureLabel& label : labels) {
+        if (scored(label.gesture)) {
+            ++gestures_[label.gesture].labelled;
+        }
+    }
+    for (const Life& life : lives) {
+        const GestureEvent& e = life.begin;
+        GestureScore& score = gestures_[name_of(e)];
+        if (life.cancelled) {
+            continue;  // counted below, when it is known what was matched
+        }
+        JudgedEvent verdict;
+        verdict.event = e;
+        for (const GestureLabel& label : labels) {
+            if (inside(label, e.sensor)) {
+                verdict.during = label.gesture;
+            }
+        }
+        const auto hit = find(labels, matched, [&](const GestureLabel& l) {
+            return scored(l.gesture) && same_gesture(l, e) && same_hand(l, e) &&
+                   inside(l, e.sensor);
+        });
+        const auto ok_sign = find(labels, matched, [&](const GestureLabel& l) {
+            return l.gesture == kOkSign && e.type == GestureType::pinch && same_hand(l, e) &&
+                   inside(l, e.sensor);
+        });
+        const bool other_hand =
+            std::any_of(labels.begin(), labels.end(), [&](const GestureLabel& l) {
+                return same_gesture(l, e) && !same_hand(l, e) && inside(l, e.sensor);
+            });
+        const bool overlaps = std::any_of(labels.begin(), labels.end(), [&](const GestureLabel& l) {
+            const bool ours =
+                same_gesture(l, e) || (l.gesture == kOkSign && e.type == GestureType::pinch);
+            return ours && e.onset <= l.end && l.start <= life.last;
+        });
+        if (hit) {
+            matched[*hit] = true;
+            verdict.verdict = Verdict::correct;
+            ++score.correct;
+            const GestureLabel& label = labels[*hit];
+            score.from_start_ms.push_back(to_seconds(e.sensor - label.start) * 1e3);
+            score.from_onset_ms.push_back(to_seconds(e.sensor - e.onset) * 1e3);
+            score.from_end_ms.push_back(to_seconds(e.sensor - label.end) * 1e3);
+        } else if (ok_sign) {
+            matched[*ok_sign] = true;
+            verdict.verdict = Verdict::allowed;
+            ++score.allowed;
+        } else if (other_hand) {
+            verdict.verdict = Verdict::wrong_hand;
+            ++score.wrong_hand;
+        } else if (overlaps) {
+            verdict.verdict = Verdict::overlap;
+            ++score.overlapping;
+        } else {
+            verdict.verdict = Verdict::stray;
+            ++score.stray;
+        }
+        judged.push_back(std::move(verdict));
+    }
+    for (const Life& life : lives) {
+        if (!life.cancelled) {
+            continue;
+        }
+        GestureScore& score = gestures_[name_of(life.begin)];
+        ++score.cancelled;
+        const auto lost = find(labels, matched, [&](const GestureLabel& l) {
+            return same_gesture(l, life.begin) && inside(l, life.begin.sensor);
+        });
+        score.cancelled_in_label += lost ? 1 : 0;
+    }
+    if (labels.empty()) {
+        unlabelled_events_ += static_cast<int>(judged.size());
+        unlabelled_hours_ += to_seconds(length) / kSecondsAnHour;
+    }
+    return judged;
+}
+
+GestureScore GestureScorer::all() const {
+    GestureScore sum;
+    for (const auto& [name, score] : gestures_) {
+        sum.add(score);
+    }
+    return sum;
+}
+
+}  // namespace xtrack
