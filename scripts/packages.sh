@@ -79,6 +79,9 @@ ensure_packages() {
     missing=$(missing_packages "$@" | tr '\n' ' ')
     [ -n "$missing" ] || return 0
     echo "Missing packages: $missing"
+    case $missing in
+        *:*) echo "Those with a colon need dpkg --add-architecture, which is part of it." ;;
+    esac
     local sudo=()
     if [ "$(id -u)" != 0 ]; then
         if ! command -v sudo >/dev/null; then
@@ -100,6 +103,16 @@ ensure_packages() {
         esac
     fi
     local apt=("${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -y -q --no-install-recommends)
+    local foreign
+    foreign=$(tr ' ' '\n' <<<"$missing" | sed -n 's/.*://p' | sort -u)
+    local architecture added=no
+    for architecture in $foreign; do
+        if ! dpkg --print-foreign-architectures | grep -qx "$architecture"; then
+            "${sudo[@]}" dpkg --add-architecture "$architecture"
+            added=yes
+        fi
+    done
+    [ "$added" = no ] || "${apt[@]}" update
     # The lists may be absent or too old for what they point to: refresh them only then.
     # shellcheck disable=SC2086
     if ! "${apt[@]}" install $missing; then

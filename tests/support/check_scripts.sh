@@ -8,20 +8,20 @@ trap 'rm -rf "$work"' EXIT
 mkdir -p "$work/bin" "$work/tree"
 cp -r "$sources/scripts" "$work/tree/scripts"
 # A system with these commands and no others; `id` says who we are.
-for tool in bash env awk grep tr dirname head sed cat; do
+for tool in bash env awk grep tr dirname head sed cat sort; do
     ln -s "$(command -v $tool)" "$work/bin/$tool"
 done
 printf '#!/bin/sh\necho "${FAKE_ID:-1000}"\n' >"$work/bin/id"
 chmod +x "$work/bin/id"
 
-# expect <exit status> <text> <argument...>: runs scripts/demo there
+# expect <exit status> <text> <argument...>: runs scripts/demo (or $script) there
 expect() {
     local status=$1 text=$2 got=0
     shift 2
-    env -i PATH="$work/bin" HOME="$work" FAKE_ID="${FAKE_ID:-1000}" "$work/tree/scripts/demo" "$@" \
+    env -i PATH="$work/bin" HOME="$work" FAKE_ID="${FAKE_ID:-1000}" "$work/tree/scripts/${script:-demo}" "$@" \
         >"$work/out" 2>&1 </dev/null || got=$?
     if [ "$got" != "$status" ] || ! grep -qF -- "$text" "$work/out"; then
-        echo "FAILED: scripts/demo $*: exit $got, want $status and '$text' in:"
+        echo "FAILED: scripts/${script:-demo} $*: exit $got, want $status and '$text' in:"
         cat "$work/out"
         exit 1
     fi
@@ -52,6 +52,12 @@ grep -q update "$work/apt" && { echo "FAILED: apt-get update was not needed"; ex
 rm "$work/apt"
 FAKE_ID=0 expect 127 'Missing packages:'
 [ -e "$work/apt" ] || { echo "FAILED: root was asked"; exit 1; }
+
+# The tests also want libraries of another architecture.
+printf '#!/bin/sh\necho "dpkg $*" >>"%s/apt"\n' "$work" >"$work/bin/dpkg"
+chmod +x "$work/bin/dpkg"
+script='test' expect 127 'libhwy-dev:arm64' --yes
+grep -q 'dpkg --add-architecture arm64' "$work/apt" || { echo "FAILED: no foreign architecture"; exit 1; }
 
 # With everything installed apt is not called at all.
 rm "$work/apt"
