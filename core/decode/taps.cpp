@@ -84,36 +84,53 @@ Result<TapSet> design_taps(TapDesign design, double step_rad, double first_phase
 }
 
 Result<TapSet> least_squares_taps(std::span<const double> phases_rad) {
-    const auto count = static_cast<Eigen::Index>(phases_rad.size());
+    const std::size_t count = phases_rad.size();
     if (count < 3 || count > kMaxTaps) {
         return Error{ErrorCode::invalid_argument,
                      std::to_string(count) + " phases of one period; phase shifting needs 3 to " +
                          std::to_string(kMaxTaps)};
     }
-    // I_n = A + (B cos phi) cos(phase_n) - (B sin phi) sin(phase_n)
-    Eigen::Matrix<double, Eigen::Dynamic, 3> model(count, 3);
-    for (Eigen::Index n = 0; n < count; ++n) {
-        const double phase = phases_rad[static_cast<std::size_t>(n)];
+    for (const double phase : phases_rad) {
         if (!std::isfinite(phase)) {
             return Error{ErrorCode::invalid_argument, "a pattern's phase is not a number"};
         }
-        model.row(n) << 1.0, std::cos(phase), -std::sin(phase);
     }
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(model, Eigen::ComputeThinU | Eigen::ComputeThinV);
-    const auto singular = svd.singularValues();
-    if (singular(2) < kMinConditioning * singular(0)) {
+    TapSet set;
+    if (!fit_taps(phases_rad, set)) {
         return Error{ErrorCode::invalid_argument,
                      "the phases of a period are too alike to determine offset, amplitude and "
                      "phase; use at least three spread over the circle"};
     }
-    const Eigen::MatrixXd inverse = svd.solve(Eigen::MatrixXd::Identity(count, count));
-    TapSet set;
-    set.count = static_cast<int>(count);
-    for (Eigen::Index n = 0; n < count; ++n) {
-        set.taps[static_cast<std::size_t>(n)].re = static_cast<float>(inverse(1, n));
-        set.taps[static_cast<std::size_t>(n)].im = static_cast<float>(inverse(2, n));
-    }
     return set;
+}
+
+bool fit_taps(std::span<const double> phases_rad, TapSet& set) noexcept {
+    if (phases_rad.size() < 3 || phases_rad.size() > kMaxTaps) {
+        return false;
+    }
+    // I_n = A + (B cos phi) cos(phase_n) - (B sin phi) sin(phase_n)
+    const auto row = [](double phase) {
+        return Eigen::Vector3d(1.0, std::cos(phase), -std::sin(phase));
+    };
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    for (const double phase : phases_rad) {
+        normal += row(phase) * row(phase).transpose();
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(normal);
+    const Eigen::Vector3d values = solver.eigenvalues();  // ascending squares of singular values
+    if (!(values(0) > kMinConditioning * kMinConditioning * values(2))) {
+        return false;
+    }
+    const Eigen::Matrix3d inverse = solver.eigenvectors() * values.cwiseInverse().asDiagonal() *
+                                    solver.eigenvectors().transpose();
+    set.count = static_cast<int>(phases_rad.size());
+    for (std::size_t n = 0; n < phases_rad.size(); ++n) {
+        const Eigen::Vector3d solution = inverse * row(phases_rad[n]);
+        set.taps[n] = {};
+        set.taps[n].re = static_cast<float>(solution(1));
+        set.taps[n].im = static_cast<float>(solution(2));
+    }
+    return true;
 }
 
 }  // namespace xtrack

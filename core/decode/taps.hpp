@@ -59,4 +59,8 @@ enum class TapDesign {
 /// @thread any
 [[nodiscard]] Result<TapSet> least_squares_taps(std::span<const double> phases_rad);
 
+/// The same without allocation or message, for phases that change from frame to frame.
+/// @return false, and `set` untouched, where least_squares_taps() would fail
+[[nodiscard]] bool fit_taps(std::span<const double> phases_rad, TapSet& set) noexcept;
+
 }  // namespace xtrack

@@ -223,8 +223,10 @@ void Triangulation::undistort_projector_row(int y, int count, float* coordinate_
     }
 }
 
-double Triangulation::coordinate_of_depth(int u, int v, double z_mm) const noexcept {
-    const Ratio r = ratio(u, v);
+double Triangulation::coordinate_of_depth(double u, double v, double z_mm) const noexcept {
+    const RayXY direction = ray_of_pixel(camera_, u, v);
+    const Vec3d seen(direction.x, direction.y, 1.0);
+    const Ratio r{coded_.dot(seen), scale_.dot(seen), other_.dot(seen)};
     const double ideal = (r.a * z_mm + b_) / (r.c * z_mm + d_);
     return projector_.distorted() ? ideal + lens_shift_px(r, z_mm) : ideal;
 }

@@ -46,7 +46,7 @@ class Triangulation {
     void undistort_projector_row(int y, int count, float* coordinate_px) const noexcept;
 
     /// Coordinate that a point at depth z_mm in pixel (u, v) has, as the projector shows it.
-    [[nodiscard]] double coordinate_of_depth(int u, int v, double z_mm) const noexcept;
+    [[nodiscard]] double coordinate_of_depth(double u, double v, double z_mm) const noexcept;
 
     /// A row of coordinate_of_depth() from depth in steps of unit_mm; 0 gives NaN.
     void coordinate_of_depth_row(int y, int count, const std::uint16_t* depth, double unit_mm,

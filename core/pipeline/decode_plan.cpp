@@ -208,6 +208,10 @@ Result<DecodePlan> DecodePlan::create(const PatternSequence& sequence,
     } else if (settings.taps != PhaseTaps::automatic && settings.taps != PhaseTaps::least_squares) {
         return unsupported("the chosen taps need a sequence of one period; choose least_squares");
     }
+    for (const Pattern& pattern : sequence.patterns) {
+        plan.pattern_phase_rad.push_back(pattern.kind == PatternKind::sine ? pattern.phase_rad[0]
+                                                                           : 0.0);
+    }
     for (const SinePlan& sine : plan.sines) {
         plan.needed.insert(plan.needed.end(), sine.patterns.begin(), sine.patterns.end());
     }

@@ -48,7 +48,8 @@ struct DecodePlan {
     std::vector<SinePlan> sines;  ///< longest period first
     std::optional<CyclePlan> cycle;
     std::optional<GrayPlan> gray;
-    std::vector<int> needed;  ///< patterns without which there is no depth, ascending
+    std::vector<double> pattern_phase_rad;  ///< by pattern; 0 where it is no sine
+    std::vector<int> needed;                ///< patterns without which there is no depth, ascending
 
     /// @return unsupported or invalid_argument, naming the pattern
     [[nodiscard]] static Result<DecodePlan> create(const PatternSequence& patterns,

@@ -22,6 +22,8 @@ Result<void> validate(const DecodeSettings& settings) {
         in_range("min_modulation", settings.min_modulation, 0.0, 127.0),
         in_range("order_tolerance", settings.order_tolerance, 0.05, 0.5),
         in_range("gray_edge_guard", settings.gray_edge_guard, 0.0, 0.45),
+        in_range("motion_tolerance", settings.motion_tolerance, 0.05, 10.0),
+        in_range("max_motion_px", settings.max_motion_px, 8.0, 400.0),
     };
     for (const Result<void>& check : checks) {
         if (!check) {

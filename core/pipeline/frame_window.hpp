@@ -31,6 +31,10 @@ class FrameWindow {
     [[nodiscard]] const Frame* newest(int pattern) const noexcept {
         return slot(pattern)[0].frame.get();
     }
+    /// The frame of a pattern before its newest; null if there is none.
+    [[nodiscard]] const Frame* previous(int pattern) const noexcept {
+        return slot(pattern)[1].frame.get();
+    }
     /// The newest frame of a pattern that saw image row y cleanly; null if there is none.
     [[nodiscard]] const Frame* clean(int pattern, int y) const noexcept;
 

@@ -22,6 +22,20 @@ enum class OrderSource {
     none,         ///< none: phase and modulation only, no depth; the rig is not read
 };
 
+/// What is done about things that move while the projector goes through its patterns. All but `off`
+/// need a second image of every pattern, so they begin with the second cycle, and do nothing in
+/// sequences with a Gray code.
+enum class MotionHandling {
+    /// Nothing: static scenes, scanning. Depth is that of the centre of the window.
+    off,
+    /// Pixels whose images of the same pattern disagree are masked.
+    mask,
+    /// The images of the largest moving thing are laid on top of each other, in whole pixels, with
+    /// taps corrected for the phase that the move adds; what still disagrees is masked. Depth is
+    /// that of the newest frame.
+    follow,
+};
+
 /// Settings of the DepthDecoder. Defaults suit a hand before a projector at 60 images a second.
 /// @since 0.1
 struct DecodeSettings {
@@ -37,6 +51,13 @@ struct DecodeSettings {
     double order_tolerance = 0.5;
     /// Share of white - black around its threshold where a Gray code bit is uncertain, 0 ... 0.45.
     double gray_edge_guard = 0.2;
+    MotionHandling motion = MotionHandling::follow;
+    /// Two images of the same pattern, one cycle apart, may differ by this much where something
+    /// moved, in shares of the fringe amplitude, 0.05 ... 10; more is masked.
+    double motion_tolerance = 0.6;
+    /// Largest move from one image of a pattern to the next, camera px, 8 ... 400. Its square is
+    /// the cost of the search.
+    int max_motion_px = 120;
     /// Keep phase, modulation, coordinate and average images of each depth; costs memory traffic.
     bool keep_maps = false;
 };

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <limits>
+#include <span>
+
+#include "core/decode/decode_row.hpp"
+#include "core/decode/luma.hpp"
+#include "core/pipeline/depth_decoder_impl.hpp"
+#include "core/unwrap/gray_code.hpp"
+#include "core/unwrap/unwrap_row.hpp"
+
+namespace xtrack {
+namespace {
+
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+constexpr int kClipped = 255;
+// A coordinate may pass the projector's border by this much of noise, px.
+constexpr double kBorderMarginPx = 1.0;
+
+}  // namespace
+
+bool DepthDecoder::Impl::choose_images(std::size_t sine, int y, Images& images) const noexcept {
+    const SinePlan& period = plan.sines[sine];
+    if (plan.cycle) {
+        const auto count = static_cast<std::size_t>(plan.cycle->images);
+        if (window.consecutive(y, std::span(images.frames).first(count))) {
+            images.taps = plan.cycle->designs[static_cast<std::size_t>(images.frames[0]->pattern)];
+            return true;
+        }
+    }
+    images.taps = period.newest_taps;
+    for (std::size_t n = 0; n < period.patterns.size(); ++n) {
+        images.frames[n] = window.clean(period.patterns[n], y);
+        if (images.frames[n] == nullptr) {
+            return false;
+        }
+    }
+    return true;
+}
+
+const std::uint8_t* DepthDecoder::Impl::grey_row(const Frame& frame, int y,
+                                                 std::size_t buffer) noexcept {
+    const std::uint8_t* pixels = frame.pixels.row(y);
+    if (frame.format == PixelFormat::grey8) {
+        return pixels;
+    }
+    std::uint8_t* grey = row_grey.row(static_cast<int>(buffer));
+    luma_row(pixels, size.width, grey);
+    return grey;
+}
+
+void DepthDecoder::Impl::decode_sine_row(std::size_t sine, const Images& images, int y,
+                                         const RowOut& out) noexcept {
+    DecodeRow row;
+    row.taps = images.taps.count;
+    // Columns in which every shifted image has a pixel.
+    int begin = 0;
+    int end = size.width;
+    bool inside = true;
+    for (std::size_t n = 0; n < static_cast<std::size_t>(row.taps); ++n) {
+        const Tap& tap = images.taps.taps[n];
+        begin = std::max(begin, -tap.dx);
+        end = std::min(end, size.width - tap.dx);
+        inside = inside && y + tap.dy >= 0 && y + tap.dy < size.height;
+    }
+    if (!inside || begin >= end) {
+        std::fill_n(out.phase, size.width, kNone);
+        std::fill_n(out.modulation, size.width, 0.0F);
+        return;
+    }
+    for (std::size_t n = 0; n < static_cast<std::size_t>(row.taps); ++n) {
+        const Tap& tap = images.taps.taps[n];
+        row.source[n] = grey_row(*images.frames[n], y + tap.dy, n) + begin + tap.dx;
+        row.re[n] = tap.re;
+        row.im[n] = tap.im;
+    }
+    std::fill_n(out.phase, begin, kNone);
+    std::fill_n(out.modulation, begin, 0.0F);
+    std::fill(out.phase + end, out.phase + size.width, kNone);
+    std::fill(out.modulation + end, out.modulation + size.width, 0.0F);
+    row.count = end - begin;
+    row.min_modulation = static_cast<float>(settings.min_modulation);
+    row.saturation_limit = settings.mask_saturated ? kClipped : kNoSaturationLimit;
+    row.phase_rad = out.phase + begin;
+    row.modulation = out.modulation + begin;
+    decode_row(row);
+    plan.sines[sine].gamma.apply(size.width, out.phase);
+}
+
+void DepthDecoder::Impl::decode_gray_row(int y, float* coordinate_px, float* modulation) noexcept {
+    const GrayPlan& gray = *plan.gray;
+    GrayRow row;
+    row.count = size.width;
+    row.bits = gray.bits;
+    std::size_t buffer = 0;
+    const auto source = [&](int pattern) -> const std::uint8_t* {
+        return pattern < 0 ? nullptr : grey_row(*window.clean(pattern, y), y, buffer++);
+    };
+    for (std::size_t bit = 0; bit < static_cast<std::size_t>(gray.bits); ++bit) {
+        row.image[bit] = source(gray.image[bit]);
+        row.inverse[bit] = source(gray.inverse[bit]);
+    }
+    row.white = source(gray.white);
+    row.black = source(gray.black);
+    row.cell_px = gray.cell_px;
+    row.offset_px = gray.offset_px;
+    row.min_modulation = static_cast<float>(settings.min_modulation);
+    row.edge_guard = static_cast<float>(settings.gray_edge_guard);
+    row.centre_only = plan.sines.empty();
+    row.coordinate_px = coordinate_px;
+    row.modulation = modulation;
+    gray_code_row(row);
+    if (settings.keep_maps && row.white != nullptr && row.black != nullptr) {
+        float* mean = average.row(y);
+        for (int i = 0; i < size.width; ++i) {
+            mean[i] = 0.5F * static_cast<float>(row.white[i] + row.black[i]);
+        }
+    }
+}
+
+void DepthDecoder::Impl::decode_row_chain(const std::vector<Images>& chain, int y,
+                                          const RowOut& out) noexcept {
+    const std::size_t sines = chain.size();
+    if (!geometry) {
+        if (sines > 0) {
+            decode_sine_row(sines - 1, chain.back(), y, out);
+        }
+        return;
+    }
+    // Two buffers take turns as reference and result, so that the last result lands in `out`.
+    float* result = sines % 2 == 1 ? out.coordinate : row_reference.row(0);
+    float* spare = sines % 2 == 1 ? row_reference.row(0) : out.coordinate;
+    const float* reference = spare;
+    auto tolerance = static_cast<float>(settings.order_tolerance);
+    if (settings.order == OrderSource::depth_image) {
+        reference = order_px.row(y);
+    } else if (plan.gray) {
+        decode_gray_row(y, spare, out.modulation);
+    } else {
+        reference = order.row(y);
+        tolerance = order.tolerance();
+    }
+    for (std::size_t n = 0; n < sines; ++n) {
+        decode_sine_row(n, chain[n], y, out);
+        UnwrapRow row;
+        row.count = size.width;
+        row.reference_px = reference;
+        row.phase_rad = out.phase;
+        row.period_px = plan.sines[n].period_px;
+        row.tolerance = tolerance;
+        row.coordinate_min_px = static_cast<float>(-0.5 - kBorderMarginPx);
+        row.coordinate_max_px = static_cast<float>(plan.coded_length_px - 0.5 + kBorderMarginPx);
+        row.coordinate_px = result;
+        unwrap_row(row);
+        reference = result;
+        std::swap(result, spare);
+        tolerance = static_cast<float>(settings.order_tolerance);
+    }
+}
+
+void DepthDecoder::Impl::average_row(const Images& images, int y) noexcept {
+    float* mean = average.row(y);
+    std::fill(mean, mean + size.width, 0.0F);
+    const float weight = 1.0F / static_cast<float>(images.taps.count);
+    for (std::size_t n = 0; n < static_cast<std::size_t>(images.taps.count); ++n) {
+        const std::uint8_t* grey = grey_row(*images.frames[n], y, n);
+        for (int i = 0; i < size.width; ++i) {
+            mean[i] += weight * static_cast<float>(grey[i]);
+        }
+    }
+}
+
+void DepthDecoder::Impl::mask_rows(int begin, int end) noexcept {
+    for (int y = begin; y < end; ++y) {
+        std::fill_n(depth.depth.row(y), size.width, std::uint16_t{0});
+        std::fill_n(depth.quality.row(y), size.width, std::uint8_t{0});
+        if (settings.keep_maps) {
+            if (!phase_map.phase_rad.empty()) {
+                std::fill_n(phase_map.phase_rad.row(y), size.width, kNone);
+            }
+            std::fill_n(phase_map.modulation.row(y), size.width, 0.0F);
+            std::fill_n(average.row(y), size.width, 0.0F);
+            if (!coordinate.empty()) {
+                std::fill_n(coordinate.row(y), size.width, kNone);
+            }
+        }
+    }
+}
+
+void DepthDecoder::Impl::triangulate_row(int y, const RowOut& out) noexcept {
+    if (!geometry) {
+        std::fill_n(depth.depth.row(y), size.width, std::uint16_t{0});
+        std::fill_n(depth.quality.row(y), size.width, std::uint8_t{0});
+        return;
+    }
+    DepthRow row;
+    geometry->prepare_row(y, row_rays.row(0), row);
+    row.count = size.width;
+    row.coordinate_px = out.coordinate;
+    if (geometry->projector_distorted()) {
+        float* ideal = row_ideal.row(0);
+        std::copy_n(out.coordinate, size.width, ideal);
+        geometry->undistort_projector_row(y, size.width, ideal);
+        row.coordinate_px = ideal;
+    }
+    row.modulation = out.modulation;
+    row.depth = depth.depth.row(y);
+    row.quality = depth.quality.row(y);
+    depth_row(row);
+}
+
+void DepthDecoder::Impl::decode_rows(int begin, int end) noexcept {
+    bool complete = true;
+    for (const int pattern : plan.needed) {
+        complete = complete && window.clean(pattern, begin) != nullptr;
+    }
+    for (std::size_t n = 0; n < still.size(); ++n) {
+        complete = complete && choose_images(n, begin, still[n]);
+    }
+    if (!complete) {
+        mask_rows(begin, end);
+        return;
+    }
+    follow_images();
+    for (int y = begin; y < end; ++y) {
+        const bool keep = settings.keep_maps;
+        const RowOut out{
+            phase_map.phase_rad.empty() ? row_phase.row(0) : phase_map.phase_rad.row(y),
+            keep ? phase_map.modulation.row(y) : row_modulation.row(0),
+            coordinate.empty() ? row_coordinate.row(0) : coordinate.row(y)};
+        decode_row_chain(still, y, out);
+        if (motion) {
+            decode_moving_row(y, out);
+        }
+        if (keep && !still.empty()) {
+            average_row(still.back(), y);
+        }
+        triangulate_row(y, out);
+    }
+}
+
+}  // namespace xtrack

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <xtrack/frame.hpp>
+#include <xtrack/image.hpp>
+
+#include "core/pipeline/frame_window.hpp"
+
+namespace xtrack {
+
+/// Whole camera pixels.
+struct Shift {
+    int dx = 0;
+    int dy = 0;
+};
+
+/// Finds what moves in front of the camera and how, so that the images of a window can be laid on
+/// top of each other before they are decoded.
+///
+/// Two images of the same pattern differ only where something moved. The move is the one shift that
+/// brings most of what differs into agreement (block matching, coarse to fine); it is assumed even
+/// over the window. Each cell of 8 x 8 pixels then follows the move, or stands still, whichever
+/// explains its images better.
+class MotionEstimator {
+ public:
+    static constexpr int kCellPx = 8;
+
+    struct Settings {
+        float noise_levels = 4.0F;  ///< mean difference of a cell that counts as moving
+        int max_shift_px = 120;     ///< between two images of one pattern
+    };
+
+    MotionEstimator(Size image, int patterns, const Settings& settings);
+
+    /// Takes the window after `newest` was pushed into it. No allocation.
+    void update(const FrameWindow& window, const Frame& newest) noexcept;
+    void clear() noexcept;
+
+    /// False: nothing moves, every answer below is empty.
+    [[nodiscard]] bool moving() const noexcept { return moving_; }
+    /// True where the cell holds, or lately held, something that moved.
+    [[nodiscard]] bool disturbed(int cell_x, int cell_y) const noexcept {
+        return age_.at(cell_x, cell_y) > 0;
+    }
+    /// True where the cell follows the move.
+    [[nodiscard]] bool follows(int cell_x, int cell_y) const noexcept {
+        return moving_ && follows_.at(cell_x, cell_y) != 0;
+    }
+    /// True if any cell of this row of cells is disturbed.
+    [[nodiscard]] bool row_disturbed(int cell_y) const noexcept {
+        return row_disturbed_[static_cast<std::size_t>(cell_y)] != 0;
+    }
+    /// From a pixel of the newest frame to where `frame` shows the same point.
+    [[nodiscard]] Shift to(const Frame& frame) const noexcept;
+    /// Image motion, px a second.
+    [[nodiscard]] Vec2f velocity_px() const noexcept { return velocity_; }
+    /// Time between two images of one pattern, s.
+    [[nodiscard]] double seconds_per_cycle() const noexcept { return seconds_per_cycle_; }
+    /// Largest difference between the two newest images of a pattern, over all patterns, at a pixel
+    /// of the newest frame that follows the move or stands still; grey levels.
+    [[nodiscard]] int worst_difference(int x, int y, bool follow) const noexcept;
+    /// Centre of the cells that follow, px of the newest frame.
+    [[nodiscard]] Vec2f centre_px() const noexcept { return centre_; }
+    [[nodiscard]] int cells_x() const noexcept { return age_.width(); }
+    [[nodiscard]] int cells_y() const noexcept { return age_.height(); }
+
+ private:
+    struct Small {
+        Image<std::uint8_t> cells;
+        const Frame* frame = nullptr;
+    };
+    void shrink(const Frame& frame, Image<std::uint8_t>& cells) const noexcept;
+    [[nodiscard]] int mark_moving(const Image<std::uint8_t>& now,
+                                  const Image<std::uint8_t>& before) noexcept;
+    [[nodiscard]] Shift search_cells(const Image<std::uint8_t>& now,
+                                     const Image<std::uint8_t>& before) const noexcept;
+    [[nodiscard]] Shift search_pixels(const Frame& now, const Frame& before, Shift around,
+                                      int radius, int step) const noexcept;
+    void remember() noexcept;
+    void choose_cells() noexcept;
+    void pair_images(const FrameWindow& window) noexcept;
+
+    Size size_;
+    int patterns_;
+    Settings settings_;
+    Stamp now_;
+    double seconds_per_cycle_ = 0.0;
+    bool moving_ = false;
+    Vec2f velocity_ = Vec2f::Zero();
+    Vec2f acceleration_ = Vec2f::Zero();
+    Vec2f centre_ = Vec2f::Zero();
+    std::vector<std::array<Small, FrameWindow::kDepth>> small_;
+    Image<std::uint8_t> age_;     // pushes for which a cell stays disturbed
+    Image<std::uint8_t> active_;  // moved between the newest two images of one pattern
+    Image<std::uint8_t> follows_;
+    Image<float> still_cost_, follow_cost_;
+    std::vector<std::uint8_t> row_disturbed_;
+    std::vector<std::array<std::int16_t, 2>> active_cells_;
+    struct Pair {
+        const Frame* now;
+        const Frame* before;
+        Shift to_now, to_before;
+    };
+    std::vector<Pair> pairs_;
+    struct Past {
+        Stamp stamp;
+        Vec2f velocity = Vec2f::Zero();
+    };
+    std::array<Past, 16> history_{};  // newest first
+    std::size_t history_count_ = 0;
+};
+
+}  // namespace xtrack

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <span>
+
+#include "core/pipeline/depth_decoder_impl.hpp"
+
+namespace xtrack {
+namespace {
+
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+// Differences of one pixel below this are camera noise and compression, grey levels.
+constexpr float kPixelNoise = 8.0F;
+// Step for the slope of the projector coordinate along the image motion, s.
+constexpr double kSlopeStepS = 1e-3;
+
+}  // namespace
+
+double DepthDecoder::Impl::drift_px_per_s() noexcept {
+    if (!geometry) {
+        return 0.0;
+    }
+    // The depth of what moves, from the depth image before this one.
+    moving_depths.clear();
+    constexpr int kCell = MotionEstimator::kCellPx;
+    for (int cy = 0; cy < motion->cells_y(); ++cy) {
+        for (int cx = 0; cx < motion->cells_x(); ++cx) {
+            const std::uint16_t z = motion->follows(cx, cy) ? depth.depth.at(cx * kCell + kCell / 2,
+                                                                             cy * kCell + kCell / 2)
+                                                            : std::uint16_t{0};
+            if (z > 0) {
+                moving_depths.push_back(z);
+            }
+        }
+    }
+    if (moving_depths.empty()) {
+        return 0.0;
+    }
+    const auto middle =
+        moving_depths.begin() + static_cast<std::ptrdiff_t>(moving_depths.size() / 2);
+    std::nth_element(moving_depths.begin(), middle, moving_depths.end());
+    const double z_mm = *middle * depth.depth_unit_mm;
+    const Vec2f centre = motion->centre_px();
+    const Vec2f ahead = centre + motion->velocity_px() * static_cast<float>(kSlopeStepS);
+    return (geometry->coordinate_of_depth(static_cast<double>(ahead.x()),
+                                          static_cast<double>(ahead.y()), z_mm) -
+            geometry->coordinate_of_depth(static_cast<double>(centre.x()),
+                                          static_cast<double>(centre.y()), z_mm)) /
+           kSlopeStepS;
+}
+
+void DepthDecoder::Impl::follow_images() noexcept {
+    can_follow = settings.motion == MotionHandling::follow && motion && motion->moving();
+    drift_rad_per_cycle = 0.0;
+    if (!can_follow) {
+        return;
+    }
+    const double drift = moving_drift_px_per_s;
+    for (std::size_t sine = 0; sine < still.size(); ++sine) {
+        const SinePlan& period = plan.sines[sine];
+        Images& moved = following[sine];
+        moved = still[sine];
+        const auto count = static_cast<std::size_t>(moved.taps.count);
+        std::array<double, kMaxTaps> phases{};
+        for (std::size_t n = 0; n < count; ++n) {
+            const Frame& frame = *moved.frames[n];
+            const double back_s = to_seconds(frame.stamp - *last_stamp);
+            phases[n] = plan.pattern_phase_rad[static_cast<std::size_t>(frame.pattern)] +
+                        2.0 * std::numbers::pi / period.period_px * drift * back_s;
+        }
+        can_follow = can_follow && fit_taps(std::span(phases).first(count), moved.taps);
+        for (std::size_t n = 0; n < count; ++n) {
+            const Shift shift = motion->to(*moved.frames[n]);
+            moved.taps.taps[n].dx = shift.dx;
+            moved.taps.taps[n].dy = shift.dy;
+        }
+        drift_rad_per_cycle = std::max(
+            drift_rad_per_cycle, std::fabs(2.0 * std::numbers::pi / period.period_px * drift) *
+                                     motion->seconds_per_cycle());
+    }
+}
+
+void DepthDecoder::Impl::mask_disagreeing(int y, int begin, int end, bool follow,
+                                          const RowOut& out) noexcept {
+    // A drift of the phase changes the images of one pattern as well, and is no disagreement.
+    const double drift = std::min(drift_rad_per_cycle, std::numbers::pi);
+    const auto allowed = static_cast<float>(settings.motion_tolerance +
+                                            (follow ? 2.0 * std::sin(0.5 * drift) : 0.0));
+    for (int x = begin; x < end; ++x) {
+        const auto worst = static_cast<float>(motion->worst_difference(x, y, follow));
+        if (worst > std::max(kPixelNoise, allowed * out.modulation[x])) {
+            out.phase[x] = kNone;
+            out.modulation[x] = 0.0F;
+            out.coordinate[x] = kNone;
+        }
+    }
+}
+
+void DepthDecoder::Impl::decode_moving_row(int y, const RowOut& out) noexcept {
+    constexpr int kCell = MotionEstimator::kCellPx;
+    const int cy = std::min(y / kCell, motion->cells_y() - 1);
+    if (!motion->row_disturbed(cy)) {
+        return;
+    }
+    const RowOut moved{moving_phase.row(0), moving_modulation.row(0), moving_coordinate.row(0)};
+    bool decoded = false;
+    for (int cx = 0; cx < motion->cells_x(); ++cx) {
+        if (!motion->disturbed(cx, cy)) {
+            continue;
+        }
+        const int begin = cx * kCell;
+        const int end = cx + 1 == motion->cells_x() ? size.width : begin + kCell;
+        const bool follow = can_follow && motion->follows(cx, cy);
+        if (follow) {
+            if (!decoded) {
+                decode_row_chain(following, y, moved);
+                decoded = true;
+            }
+            std::copy(moved.phase + begin, moved.phase + end, out.phase + begin);
+            std::copy(moved.modulation + begin, moved.modulation + end, out.modulation + begin);
+            std::copy(moved.coordinate + begin, moved.coordinate + end, out.coordinate + begin);
+        }
+        mask_disagreeing(y, begin, end, follow, out);
+    }
+}
+
+}  // namespace xtrack
