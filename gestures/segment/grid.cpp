@@ -76,12 +76,10 @@ void Grid::create(const Rig& rig, Size size) {
     }
 }
 
-void Grid::load(const DepthFrame& depth, float near_mm, float far_mm) {
+void Grid::load(const DepthFrame& depth, float near_mm) {
     const auto unit = static_cast<float>(depth.depth_unit_mm);
     const float lowest = std::max(1.0F, std::ceil(near_mm / unit));
-    const float highest = std::min(65535.0F, std::floor(far_mm / unit));
     const auto low = static_cast<int>(lowest);
-    const auto high = static_cast<int>(highest);
     const auto band = static_cast<int>(kBlockBandMm / unit);
     constexpr int kNone = 1 << 20;
     for (int y = 0; y < inner_height; ++y) {
@@ -92,7 +90,7 @@ void Grid::load(const DepthFrame& depth, float near_mm, float far_mm) {
                 const std::uint16_t* in = depth.depth.row(y * scale + dy) + x * scale;
                 for (int dx = 0; dx < scale; ++dx) {
                     const int d = in[dx];
-                    nearest = (d >= low && d <= high && d < nearest) ? d : nearest;
+                    nearest = (d >= low && d < nearest) ? d : nearest;
                 }
             }
             if (nearest == kNone) {
@@ -113,8 +111,9 @@ void Grid::load(const DepthFrame& depth, float near_mm, float far_mm) {
             out[x] = unit * static_cast<float>(sum) / static_cast<float>(count);
         }
     }
-    close_pinholes();
     drop_lone();
+    close_pinholes();
+    close_pinholes();
 }
 
 void Grid::close_pinholes() {

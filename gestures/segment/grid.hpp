@@ -21,7 +21,7 @@ class Grid {
 
     /// Fills z() from a depth image: every grid pixel is the mean of the nearest surface in its
     /// block, lone pixels are dropped and pinholes closed.
-    void load(const DepthFrame& depth, float near_mm, float far_mm);
+    void load(const DepthFrame& depth, float near_mm);
 
     [[nodiscard]] int index(int x, int y) const noexcept { return (y + kPad) * width + x + kPad; }
     [[nodiscard]] int x_of(int i) const noexcept { return i % width - kPad; }

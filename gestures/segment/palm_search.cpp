@@ -17,9 +17,9 @@ constexpr float kReachRadii = 3.3F;
 constexpr float kReachFloorMm = 105.0F;
 constexpr float kReachCeilingMm = 165.0F;
 /// A palm's centre is at most this far from the tip of its hand, mm.
-constexpr float kTipToPalmMm = 150.0F;
+constexpr float kTipToPalmMm = 135.0F;
 /// And a candidate this far loses half its weight: a forearm is as thick as a fist.
-constexpr float kTipToPalmFadeMm = 120.0F;
+constexpr float kTipToPalmFadeMm = 105.0F;
 /// Thinner than this is a finger, thicker by the ramp is not: inscribed radius, mm.
 constexpr float kFingerRadiusMm = 11.5F;
 constexpr float kFingerRampMm = 5.0F;
@@ -30,9 +30,9 @@ constexpr float kArmWeight = 3.0F;
 constexpr float kPriorWeight = 0.35F;
 constexpr float kFingerWeight = 0.8F;
 /// The wrist is the narrowest place between these, in palm radii.
-constexpr float kWristFromRadii = 0.95F;
-constexpr float kWristToRadii = 1.75F;
-constexpr float kWristDefaultRadii = 1.3F;
+constexpr float kWristFromRadii = 1.15F;
+constexpr float kWristToRadii = 1.9F;
+constexpr float kWristDefaultRadii = 1.5F;
 constexpr int kWristBins = 9;
 /// Samples of a part that are looked at; more change nothing and cost time.
 constexpr int kSamplesMax = 3500;
@@ -41,18 +41,26 @@ constexpr float kPriorReachMm = 90.0F;
 
 // Weights of the score, summed from kScoreBase; found on scenes with arms, heads and furniture.
 constexpr float kScoreBase = 0.45F;
-constexpr float kScoreFingers = 0.25F;
-constexpr float kScoreNearer = 0.20F;
+constexpr float kScoreFingers = 0.30F;
+constexpr float kScoreNearer = 0.30F;
 constexpr float kScoreRoot = 0.15F;
+constexpr float kScoreAtRoot = 0.3F;
 constexpr float kScoreBorder = 0.10F;
 constexpr float kScorePrior = 0.30F;
 constexpr float kScoreOverreach = 1.2F;
 constexpr float kScoreSize = 0.4F;
+constexpr float kScoreBody = 0.6F;      // the body that the limb grows from
+constexpr float kScoreStranger = 0.5F;  // any other
+/// Share of ahead_of_body_mm for a hand that is not connected to the body.
+constexpr float kAheadOfStrangers = 0.4F;
+constexpr float kScoreBulk = 0.5F;
+/// An open hand shows 2.5 times the area of its palm's circle, with spread fingers at most:
+constexpr float kBulkPalms = 3.6F;
 /// Finger surface that makes a full vote, mm2: two fingers.
 constexpr float kFingerAreaMm2 = 1500.0F;
 /// How much nearer than its arm a hand is for a full vote, mm.
 constexpr float kNearerMm = 100.0F;
-constexpr float kPalmUsualMinMm = 27.0F;
+constexpr float kPalmUsualMinMm = 32.0F;
 constexpr float kPalmUsualMaxMm = 54.0F;
 
 struct Samples {
@@ -190,6 +198,7 @@ void judge(const Samples& s, const Part& part, const TrackerSettings& settings,
     float arm_count = 0.0F;
     float over = 0.0F;
     float inside = 0.0F;
+    float inside_area = 0.0F;
     float far = 0.0F;
     bool arm_at_border = false;
     bool hand_at_border = false;
@@ -214,10 +223,11 @@ void judge(const Samples& s, const Part& part, const TrackerSettings& settings,
             return;
         }
         inside += 1.0F;
+        const float pitch = grid.pitch_mm(p.z());
+        inside_area += weight * pitch * pitch;
         far = std::max(far, n);
         hand_at_border |= border;
         if (n > kRingRadii * c.radius_mm && s.parts.radius_mm(grid, i) < kFingerRadiusMm) {
-            const float pitch = grid.pitch_mm(p.z());
             finger_area += weight * pitch * pitch;
         }
     });
@@ -229,7 +239,10 @@ void judge(const Samples& s, const Part& part, const TrackerSettings& settings,
         score += kScoreNearer * std::clamp(nearer, -1.0F, 1.0F);
     }
     if (part.root_pixels > 0) {
-        score += kScoreRoot * (part.root_mm - c.centre_mm).normalized().dot(c.arm_direction);
+        const Vec3f root = part.root_mm - c.centre_mm;
+        score += kScoreRoot * root.normalized().dot(c.arm_direction);
+        // Beside the body an arm begins; a hand is at the other end.
+        score -= kScoreAtRoot * (1.0F - ramp(root.norm(), 1.5F * c.radius_mm, 3.0F * c.radius_mm));
     }
     score +=
         kScoreBorder * (static_cast<float>(arm_at_border) - static_cast<float>(hand_at_border));
@@ -237,15 +250,21 @@ void judge(const Samples& s, const Part& part, const TrackerSettings& settings,
     const float usual = std::max(ramp(-c.radius_mm, -kPalmUsualMinMm, -kPalmUsualMinMm + 10.0F),
                                  ramp(c.radius_mm, kPalmUsualMaxMm, kPalmUsualMaxMm + 10.0F));
     score -= kScoreSize * usual;
+    // A shoulder, a neck, a face: hardly nearer than the body beside it.
+    const auto ahead = static_cast<float>(settings.ahead_of_body_mm);
     for (const Body& body : bodies) {
-        // A shoulder, a neck, a face: as far away as the body beside it.
-        if (c.centre_mm.z() > body.depth_mm - static_cast<float>(settings.ahead_of_body_mm)) {
-            score -= 1.0F;
-        }
+        const bool own = body.label == part.body;
+        const float need = own ? ahead : kAheadOfStrangers * ahead;
+        score -= (own ? kScoreBody : kScoreStranger) *
+                 (1.0F - ramp(body.front_mm - c.centre_mm.z(), need, 2.0F * need));
     }
+    // More surface within reach than a palm and five fingers have: a face cut up by hair.
+    const float palm_area = 3.14159F * c.radius_mm * c.radius_mm;
+    score -= kScoreBulk * ramp(inside_area / palm_area, kBulkPalms, 1.4F * kBulkPalms);
     if (c.prior >= 0) {
         score += kScorePrior;
     }
+    c.rank = score;
     c.score = std::clamp(score, 0.0F, 1.0F);
 }
 

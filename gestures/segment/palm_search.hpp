@@ -28,6 +28,7 @@ struct PalmCandidate {
     float wrist_mm = 0.0F;  ///< distance from the centre to the wrist along arm_direction
     float reach_mm = 0.0F;  ///< how far the hand goes from the centre
     float score = 0.0F;     ///< 0..1
+    float rank = 0.0F;      ///< the score before it was cut to 0..1: orders candidates
     int prior = -1;         ///< the expected palm it agrees with
 };
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "gestures/segment/chamfer.hpp"
 #include "gestures/segment/grid.hpp"
 
 namespace xtrack::segment {
@@ -22,8 +23,10 @@ struct Part {
 
 /// A surface that is too thick for a limb.
 struct Body {
+    int label = 0;          ///< as Part::body
     float area_mm2 = 0.0F;  ///< of its thick core
     float depth_mm = 0.0F;  ///< mean of its thick core
+    float front_mm = 0.0F;  ///< of the nearest tenth of it
 };
 
 /// Cuts a depth image at its discontinuities into surfaces, and every surface into a thick body
@@ -51,7 +54,9 @@ class Parts {
     /// Radius of the largest circle round a pixel that stays on its surface, mm and grid px.
     /// The image's border does not end a surface.
     [[nodiscard]] float radius_px(int i) const noexcept {
-        return static_cast<float>(distance_[static_cast<std::size_t>(i)]) / kUnit - 0.5F;
+        return static_cast<float>(distance_[static_cast<std::size_t>(i)]) /
+                   static_cast<float>(kChamferUnit) -
+               0.5F;
     }
     [[nodiscard]] float radius_mm(const Grid& grid, int i) const noexcept {
         return radius_px(i) * grid.pitch_mm(grid.z[static_cast<std::size_t>(i)]);
@@ -61,8 +66,6 @@ class Parts {
     static constexpr int kPartsMax = 32;
 
  private:
-    static constexpr float kUnit = 5.0F;  // chamfer 5-7-11 (Borgefors 1986), within 2 %
-
     void label_surfaces(const Grid& grid, std::span<const float> foreground);
     int root_of(int label) noexcept;
     void measure_distance(const Grid& grid);
@@ -78,7 +81,6 @@ class Parts {
     std::vector<int> pixels_;
     std::vector<Part> parts_;
     std::vector<Body> bodies_;
-    std::vector<float> kept_;  ///< foreground of surfaces large enough
 };
 
 }  // namespace xtrack::segment

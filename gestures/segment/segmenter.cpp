@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace xtrack::segment {
 
@@ -12,12 +13,20 @@ constexpr float kNearDefaultMm = 150.0F;
 constexpr float kFarDefaultMm = 1500.0F;
 /// Below this a candidate is not a hand.
 constexpr float kScoreMin = 0.42F;
+/// A hand that nobody expected must look more like one, and a second one still more.
+constexpr float kScoreNew = 0.5F;
+constexpr float kScoreSecond = 0.6F;
 /// A second hand is about as far away as the first; what lies farther behind is something else.
-constexpr float kSecondHandBehindMm = 350.0F;
+constexpr float kSecondHandBehindMm = 200.0F;
+/// What looks out from behind a hand, this much deeper and this near beside it, is its own arm.
+constexpr float kArmBehindMm = 40.0F;
+constexpr float kArmBesideRadii = 2.6F;
 /// Share of the palm's radius over which the skin's depth is averaged.
 constexpr float kSkinDiscRadii = 0.35F;
 /// The palm's centre is the mean of the pixels whose radius is within this share of the largest.
-constexpr float kPlateau = 0.95F;
+constexpr float kPlateau = 0.985F;
+/// Chamfer distances within this share of the largest are looked at exactly.
+constexpr float kRidge = 0.95F;
 
 }  // namespace
 
@@ -40,6 +49,10 @@ void Segmenter::create(const Rig& rig, Size size, const TrackerSettings& setting
     labels_.assign(grid_.size(), 0);
     limbs_.assign(grid_.size(), 0);
     stack_.assign(grid_.size(), 0);
+    distance_.assign(grid_.size(), 0);
+    rim_x_.assign(grid_.size(), 0);
+    rim_y_.assign(grid_.size(), 0);
+    ridge_.reserve(grid_.size());
     candidates_.reserve(static_cast<std::size_t>(Parts::kPartsMax * kCandidatesMax));
 }
 
@@ -51,7 +64,7 @@ void Segmenter::reset() {
 
 void Segmenter::segment(const DepthFrame& depth, std::int64_t elapsed_ms,
                         std::span<const PalmPrior> priors) {
-    grid_.load(depth, near_mm_, far_mm_);
+    grid_.load(depth, near_mm_);
     if (settings_.learn_background) {
         background_.mask(grid_.z, foreground_);
     } else {
@@ -77,27 +90,27 @@ void Segmenter::choose(std::span<const PalmPrior> priors) {
         }
     }
     std::sort(candidates_.begin(), candidates_.end(),
-              [](const PalmCandidate& a, const PalmCandidate& b) { return a.score > b.score; });
+              [](const PalmCandidate& a, const PalmCandidate& b) { return a.rank > b.rank; });
 
     std::fill(labels_.begin(), labels_.end(), std::uint8_t{0});
     std::fill(limbs_.begin(), limbs_.end(), std::uint8_t{0});
     count_ = 0;
+    std::array<int, kMaxHands> part_of_region{};
     for (const PalmCandidate& c : candidates_) {
         if (count_ >= std::min<int>(settings_.max_hands, static_cast<int>(kMaxHands))) {
             break;
         }
-        bool free = true;
+        bool free = c.centre_mm.z() <= far_mm_ && c.score >= kScoreMin &&
+                    (c.prior >= 0 || c.score >= kScoreNew);
         for (int k = 0; k < count_; ++k) {
             const HandRegion& other = regions_[static_cast<std::size_t>(k)];
             const Vec3f d = c.centre_mm - other.palm_mm;
-            // The other end of the same arm, or the same hand again.
             free &= d.norm() > other.palm_radius_mm + c.radius_mm;
-            free &= parts_.part_of(c.pixel) !=
-                        parts_.part_of(grid_.index(static_cast<int>(other.palm_px.x()),
-                                                   static_cast<int>(other.palm_px.y()))) ||
-                    c.prior >= 0;
-            free &= d.z() < kSecondHandBehindMm || c.prior >= 0;
+            // The other end of the same arm is no second hand.
+            free &= c.part != part_of_region[static_cast<std::size_t>(k)];
+            free &= c.prior >= 0 || (d.z() < kSecondHandBehindMm && c.score >= kScoreSecond);
         }
+        free &= !hidden_behind(c);
         if (!free) {
             continue;
         }
@@ -106,6 +119,7 @@ void Segmenter::choose(std::span<const PalmPrior> priors) {
         region.label = static_cast<std::uint8_t>(count_ + 1);
         paint(c, region);
         if (region.area_mm2 >= static_cast<float>(settings_.hand_area_min_mm2)) {
+            part_of_region[static_cast<std::size_t>(count_)] = c.part;
             ++count_;
         } else {
             for (std::uint8_t& l : labels_) {
@@ -127,10 +141,6 @@ void Segmenter::paint(const PalmCandidate& c, HandRegion& region) {
     labels_[static_cast<std::size_t>(c.pixel)] = region.label;
     region.x_begin = grid_.inner_width;
     region.y_begin = grid_.inner_height;
-    // The circle's centre is a plateau of the distance map; its middle is steadier than its peak.
-    const float peak = parts_.radius_mm(grid_, c.pixel);
-    Vec2f centre = Vec2f::Zero();
-    float centre_weight = 0.0F;
     for (int next = 0; next < used; ++next) {
         const int i = stack_[static_cast<std::size_t>(next)];
         const int x = grid_.x_of(i);
@@ -143,11 +153,6 @@ void Segmenter::paint(const PalmCandidate& c, HandRegion& region) {
         region.y_end = std::max(region.y_end, y + 1);
         region.touches_border |=
             x == 0 || y == 0 || x == grid_.inner_width - 1 || y == grid_.inner_height - 1;
-        const float excess = parts_.radius_mm(grid_, i) - kPlateau * peak;
-        if (excess > 0.0F && (grid_.point(i) - c.centre_mm).norm() < 0.5F * c.radius_mm) {
-            centre += excess * Vec2f(static_cast<float>(x), static_cast<float>(y));
-            centre_weight += excess;
-        }
         for (const int o : {-w, -1, 1, w}) {
             const int m = i + o;
             const auto k = static_cast<std::size_t>(m);
@@ -163,11 +168,108 @@ void Segmenter::paint(const PalmCandidate& c, HandRegion& region) {
         }
     }
     region.pixel_count = used;
-    region.palm_px = centre_weight > 0.0F ? Vec2f(centre / centre_weight)
-                                          : Vec2f(static_cast<float>(grid_.x_of(c.pixel)),
-                                                  static_cast<float>(grid_.y_of(c.pixel)));
-    region.palm_radius_px = parts_.radius_px(c.pixel);
-    region.palm_radius_mm = c.radius_mm;
+    region.arm_direction = c.arm_direction;
+    region.arm_seen = c.arm_seen;
+    region.score = c.score;
+    region.palm_mm = c.centre_mm;
+    centre_palm(region);
+    region.wrist_mm = c.centre_mm + c.wrist_mm * c.arm_direction;
+}
+
+bool Segmenter::hidden_behind(const PalmCandidate& c) const {
+    for (const HandRegion& hand : regions()) {
+        const Vec3f d = c.centre_mm - hand.palm_mm;
+        if (d.z() > kArmBehindMm &&
+            std::hypot(d.x(), d.y()) < kArmBesideRadii * hand.palm_radius_mm) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void Segmenter::centre_palm(HandRegion& region) {
+    // The circle is inscribed in the hand alone, so its distances are measured anew: the arm that
+    // the hand was cut from would widen it.
+    const Box box{region.x_begin, region.y_begin, region.x_end, region.y_end};
+    for (int y = box.y_begin - kPad; y < box.y_end + kPad; ++y) {
+        for (int x = box.x_begin - kPad; x < box.x_end + kPad; ++x) {
+            const auto k = static_cast<std::size_t>(grid_.index(x, y));
+            const bool outside_image =
+                x < 0 || y < 0 || x >= grid_.inner_width || y >= grid_.inner_height;
+            distance_[k] = outside_image || labels_[k] == region.label ? kChamferFar : 0;
+        }
+    }
+    spread_distance(grid_, box, distance_);
+    const auto radius_px = [&](int i) {
+        return static_cast<float>(distance_[static_cast<std::size_t>(i)]) /
+                   static_cast<float>(kChamferUnit) -
+               0.5F;
+    };
+    float peak = 0.0F;
+    int peak_pixel = grid_.index(box.x_begin, box.y_begin);
+    for (int y = box.y_begin; y < box.y_end; ++y) {
+        for (int x = box.x_begin; x < box.x_end; ++x) {
+            const int i = grid_.index(x, y);
+            if (labels_[static_cast<std::size_t>(i)] == region.label && radius_px(i) > peak) {
+                peak = radius_px(i);
+                peak_pixel = i;
+            }
+        }
+    }
+    // Chamfer distances are good to 2 %, which on a palm's flat ridge is 10 mm: near the peak they
+    // are replaced by exact ones, to the pixels just outside the rim.
+    int rim = 0;
+    for (int y = box.y_begin; y < box.y_end; ++y) {
+        for (int x = box.x_begin; x < box.x_end; ++x) {
+            const int i = grid_.index(x, y);
+            if (distance_[static_cast<std::size_t>(i)] == kChamferUnit) {
+                rim_x_[static_cast<std::size_t>(rim)] = x;
+                rim_y_[static_cast<std::size_t>(rim)] = y;
+                ++rim;
+            }
+        }
+    }
+    const auto exact_px = [&](int x, int y) {
+        int least = std::numeric_limits<int>::max();
+        for (int k = 0; k < rim; ++k) {
+            const int dx = rim_x_[static_cast<std::size_t>(k)] - x;
+            const int dy = rim_y_[static_cast<std::size_t>(k)] - y;
+            least = std::min(least, dx * dx + dy * dy);
+        }
+        return std::sqrt(static_cast<float>(least)) + 0.5F;
+    };
+    const int px = grid_.x_of(peak_pixel);
+    const int py = grid_.y_of(peak_pixel);
+    const int around = static_cast<int>(0.6F * peak);
+    const Box near{std::max(box.x_begin, px - around), std::max(box.y_begin, py - around),
+                   std::min(box.x_end, px + around + 1), std::min(box.y_end, py + around + 1)};
+    float best = 0.0F;
+    ridge_.clear();
+    for (int y = near.y_begin; y < near.y_end; ++y) {
+        for (int x = near.x_begin; x < near.x_end; ++x) {
+            const int i = grid_.index(x, y);
+            if (labels_[static_cast<std::size_t>(i)] == region.label &&
+                radius_px(i) > kRidge * peak) {
+                ridge_.push_back({x, y, exact_px(x, y)});
+                best = std::max(best, ridge_.back().radius_px);
+            }
+        }
+    }
+    // Of the highest places the middle: steadier than the one that noise made the highest.
+    Vec2f centre = Vec2f::Zero();
+    float weight = 0.0F;
+    for (const RidgePoint& p : ridge_) {
+        const float excess = p.radius_px - kPlateau * best;
+        if (excess > 0.0F) {
+            centre += excess * Vec2f(static_cast<float>(p.x), static_cast<float>(p.y));
+            weight += excess;
+        }
+    }
+    region.palm_px = weight > 0.0F ? Vec2f(centre / weight)
+                                   : Vec2f(static_cast<float>(px), static_cast<float>(py));
+    region.palm_radius_px = best > 0.0F ? best : peak;
+    region.palm_radius_mm =
+        region.palm_radius_px * grid_.pitch_mm(grid_.z[static_cast<std::size_t>(peak_pixel)]);
 
     // The skin at the centre: the mean depth of a disc round it, without what is far off.
     const float disc = std::max(1.5F, kSkinDiscRadii * region.palm_radius_px);
@@ -191,15 +293,11 @@ void Segmenter::paint(const PalmCandidate& c, HandRegion& region) {
             }
         }
     }
-    const float skin = n > 0.0F ? sum / n : c.centre_mm.z();
+    const float skin = n > 0.0F ? sum / n : grid_.z[static_cast<std::size_t>(peak_pixel)];
     const auto k = static_cast<std::size_t>(grid_.index(cx, cy));
     const Vec2f fraction = region.palm_px - Vec2f(static_cast<float>(cx), static_cast<float>(cy));
     region.palm_mm = {(grid_.ray[k].x() + fraction.x() * grid_.inverse_focal) * skin,
                       (grid_.ray[k].y() + fraction.y() * grid_.inverse_focal) * skin, skin};
-    region.arm_direction = c.arm_direction;
-    region.arm_seen = c.arm_seen;
-    region.wrist_mm = region.palm_mm + c.wrist_mm * c.arm_direction;
-    region.score = c.score;
 }
 
 HandSegmentation Segmenter::view() const noexcept {

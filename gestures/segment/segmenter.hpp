@@ -39,6 +39,8 @@ class Segmenter {
  private:
     void choose(std::span<const PalmPrior> priors);
     void paint(const PalmCandidate& c, HandRegion& region);
+    void centre_palm(HandRegion& region);
+    [[nodiscard]] bool hidden_behind(const PalmCandidate& c) const;
 
     TrackerSettings settings_;
     Grid grid_;
@@ -48,6 +50,13 @@ class Segmenter {
     std::vector<std::uint8_t> labels_;  ///< hands
     std::vector<std::uint8_t> limbs_;   ///< hands with their arms: protected from learning
     std::vector<int> stack_;
+    struct RidgePoint {
+        int x = 0, y = 0;
+        float radius_px = 0.0F;
+    };
+    std::vector<RidgePoint> ridge_;       ///< places where the palm's centre may be
+    std::vector<int> rim_x_, rim_y_;      ///< outermost pixels of the hand
+    std::vector<std::int32_t> distance_;  ///< to the rim of the hand
     std::array<PalmCandidate, kCandidatesMax> scratch_;
     std::vector<PalmCandidate> candidates_;
     std::array<HandRegion, kMaxHands> regions_;

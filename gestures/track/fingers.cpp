@@ -25,6 +25,10 @@ constexpr float kRingAreaMinMm2 = 70.0F;
 constexpr float kRingAreaMaxMm2 = 3500.0F;
 constexpr float kRingNearRadii = 0.9F;
 constexpr float kRingFarRadii = 2.3F;
+/// The outline this near to the wrist's cut is the cut, grid px.
+constexpr float kCutPixels = 2.5F;
+/// No finger points this far toward the arm: cosine of the angle between them.
+constexpr float kArmSide = 0.2F;
 constexpr int kSmoothRounds = 2;
 
 }  // namespace
@@ -86,7 +90,6 @@ void FingerReader::measure_profile(const segment::Grid& grid, std::span<const st
     const auto outline = contour_.points();
     points_.clear();
     distance_.clear();
-    const float wrist = (region.wrist_mm - region.palm_mm).norm();
     for (const int i : outline) {
         float sum = 0.0F;
         float n = 0.0F;
@@ -103,7 +106,9 @@ void FingerReader::measure_profile(const segment::Grid& grid, std::span<const st
         const Vec2f ray = grid.ray[static_cast<std::size_t>(i)];
         const Vec3f p(ray.x() * z, ray.y() * z, z);
         const Vec3f d = p - region.palm_mm;
-        const bool cut = d.dot(region.arm_direction) > wrist - 2.5F * grid.pitch_mm(z);
+        const bool cut =
+            (p - region.wrist_mm).dot(region.arm_direction) > -kCutPixels * grid.pitch_mm(z) ||
+            d.dot(region.arm_direction) > kArmSide * d.norm();
         const int x = grid.x_of(i);
         const int y = grid.y_of(i);
         const bool border =

@@ -19,8 +19,9 @@ struct TrackerSettings {
     double palm_radius_max_mm = 62.0;   ///< above it is a head, a torso, a wall
     double hand_length_max_mm = 240.0;  ///< wrist to the middle finger's tip
     double hand_area_min_mm2 = 1800.0;  ///< seen surface; a hand seen edge-on
-    /// How much nearer than the body behind it a hand must be: a shoulder or a face is not.
-    double ahead_of_body_mm = 45.0;
+    /// A hand must be nearer than the front of the body beside it by this, and is not doubted from
+    /// twice this on: a shoulder is as far as the chest, a face is 100 mm nearer.
+    double ahead_of_body_mm = 60.0;
 
     bool learn_background = true;
     /// A surface that no hand was seen on becomes background after this long.
