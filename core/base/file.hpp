@@ -24,8 +24,15 @@ namespace xtrack::base {
 /// @thread one at a time
 class NewFolder {
  public:
-    /// @return an Error if the target exists already, or its parent is missing or not writable
-    [[nodiscard]] static Result<NewFolder> create(const std::filesystem::path& target);
+    enum class Existing {
+        refuse,   ///< a target that exists is an Error
+        replace,  ///< commit() replaces it; the caller has made sure that nothing is lost
+    };
+
+    /// @return an Error if the target exists and shall not be replaced, or its parent is missing or
+    ///         not writable
+    [[nodiscard]] static Result<NewFolder> create(const std::filesystem::path& target,
+                                                  Existing existing = Existing::refuse);
 
     NewFolder(NewFolder&& other) noexcept;
     NewFolder& operator=(NewFolder&& other) noexcept;
@@ -52,6 +59,7 @@ class NewFolder {
     NewFolder() = default;
 
     std::filesystem::path target_;
+    Existing existing_ = Existing::refuse;
     std::filesystem::path temporary_;  // empty once committed or discarded
 };
 

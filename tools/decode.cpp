@@ -1,0 +1,357 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <xtrack/depth_decoder.hpp>
+#include <xtrack/point_cloud.hpp>
+#include <xtrack/recording.hpp>
+
+#include "core/base/file.hpp"
+#include "core/capture/image_codec.hpp"
+#include "tools/commands.hpp"
+#include "tools/decode_pictures.hpp"
+#include "tools/decode_report.hpp"
+#include "tools/order_depth.hpp"
+#include "tools/progress.hpp"
+#include "tools/stream.hpp"
+
+namespace xtrack::tools {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DecodeOptions {
+    std::string recording;
+    std::string out;
+    bool all = false;
+    std::string order_from;
+    bool json = false;
+    double min_modulation = DecodeSettings{}.min_modulation;
+};
+
+// Everything that a decode of ours leaves in a folder: an earlier one may be replaced, nothing
+// else.
+const std::set<std::string> kOutputs = {"wrapped.tiff", "coordinate.tiff", "modulation.png",
+                                        "depth.png",    "cloud.ply",       "preview.png"};
+
+bool holds_only_outputs(const fs::path& folder, bool may_hold_folders) {
+    std::error_code error;
+    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+        if (it->is_directory(error) && !it->is_symlink(error)) {
+            if (!may_hold_folders || !holds_only_outputs(it->path(), false)) {
+                return false;
+            }
+        } else if (kOutputs.count(it->path().filename().string()) == 0) {
+            return false;
+        }
+    }
+    return !error;
+}
+
+// Makes the folder of the answer, with its parents; an empty one or an earlier answer is replaced.
+Result<base::NewFolder> make_output(const fs::path& wanted) {
+    const fs::path out = wanted.has_filename() ? wanted : wanted.parent_path();
+    std::error_code error;
+    if (fs::exists(fs::symlink_status(out, error))) {
+        if (!fs::is_directory(out, error) || !holds_only_outputs(out, true)) {
+            return Error{
+                ErrorCode::invalid_argument,
+                "--out " + out.string() + ": holds other things; remove it or give another name"};
+        }
+        return base::NewFolder::create(out, base::NewFolder::Existing::replace);
+    }
+    if (out.has_parent_path()) {
+        fs::create_directories(out.parent_path(), error);
+    }
+    return base::NewFolder::create(out);
+}
+
+// A decoder, how its order is found, and what the user should know about that.
+struct Chosen {
+    DepthDecoder decoder;
+    bool makes_depth = true;
+    std::string order;
+    std::string note;
+};
+
+Error in_recording(const RecordingReader& recording, const Error& error) {
+    return {error.code, recording.folder().string() + ": " + error.message};
+}
+
+Result<Chosen> choose_decoder(const RecordingReader& recording, const DecodeOptions& options) {
+    DecodeSettings settings;
+    settings.keep_maps = true;
+    settings.min_modulation = options.min_modulation;
+    // One set of patterns is all there is to the first depth; a stream has more to average over.
+    settings.taps = options.all ? PhaseTaps::automatic : PhaseTaps::least_squares;
+    const auto create = [&](OrderSource order) {
+        settings.order = order;
+        return DepthDecoder::create(recording.rig(), recording.patterns(), recording.image_size(),
+                                    settings);
+    };
+    Error refusal{ErrorCode::unsupported,
+                  "no rig.yaml: phase and modulation alone, no depth; add the calibration"};
+    if (recording.has_rig()) {
+        const OrderSource wanted =
+            options.order_from.empty() ? OrderSource::automatic : OrderSource::depth_image;
+        auto decoder = create(wanted);
+        if (decoder) {
+            return Chosen{
+                std::move(*decoder),
+                true,
+                options.order_from.empty() ? "order from the patterns" : "order from a depth image",
+                {}};
+        }
+        refusal = decoder.error();
+        if (refusal.code != ErrorCode::unsupported || !options.order_from.empty()) {
+            return in_recording(recording, refusal);
+        }
+    }
+    auto decoder = create(OrderSource::none);
+    if (!decoder) {
+        return in_recording(recording, recording.has_rig() ? refusal : decoder.error());
+    }
+    return Chosen{std::move(*decoder), false, "phase alone", refusal.message};
+}
+
+class DecodeRun {
+ public:
+    DecodeRun(const DecodeOptions& options, RecordingReader recording, Chosen chosen,
+              OrderDepth order)
+        : options_(options),
+          recording_(std::move(recording)),
+          chosen_(std::move(chosen)),
+          order_(std::move(order)) {}
+
+    Result<void> run() {
+        auto source = frame_source(recording_);
+        if (!source) {
+            return source.error();
+        }
+        Progress progress("decode", recording_.entries().size());
+        const std::size_t frames = recording_.entries().size();
+        for (std::size_t i = 0; i < frames && (options_.all || reports_.empty()); ++i) {
+            const FrameSource::Item item = (*source)->next(Duration::zero());
+            if (item.status != SourceStatus::ok) {
+                return Error{ErrorCode::malformed, item.message};
+            }
+            if (auto ok = give_order(i); !ok) {
+                return ok;
+            }
+            if (chosen_.decoder.push(item.frame).state == DecodeState::depth_ready) {
+                if (auto ok = write_set(); !ok) {
+                    return ok;
+                }
+            }
+            progress.step();
+        }
+        if (reports_.empty()) {
+            return Error{ErrorCode::malformed,
+                         (recording_.folder() / "frames.csv").string() +
+                             ": holds no complete set "
+                             "of its " +
+                             std::to_string(recording_.patterns().patterns.size()) +
+                             " patterns; record all of them"};
+        }
+        return output_->commit();
+    }
+
+    [[nodiscard]] std::string answer() const {
+        const std::string method = describe(recording_.patterns()) + "; " + chosen_.order;
+        return options_.json ? json_of(method, chosen_.note, reports_)
+                             : table_of(method, chosen_.note, reports_);
+    }
+
+ private:
+    // The depth that orders a window is that of its centre, the frame the result belongs to.
+    Result<void> give_order(std::size_t newest) {
+        if (!order_.wanted()) {
+            return {};
+        }
+        const auto window = static_cast<std::size_t>(std::max(1, chosen_.decoder.frames_needed()));
+        const std::size_t centre = newest - std::min(newest, (window - 1) / 2);
+        const auto depth = order_.of(recording_, centre);
+        if (!depth) {
+            return depth.error();
+        }
+        return chosen_.decoder.set_order_depth((*depth)->view(), kDepthUnitMm);
+    }
+
+    Result<void> write_set() {
+        const DepthFrame& depth = chosen_.decoder.depth();
+        const auto entries = recording_.entries();
+        std::size_t index = 0;
+        while (index + 1 < entries.size() && entries[index].sequence != depth.sequence) {
+            ++index;
+        }
+        if (!output_) {
+            auto output = make_output(options_.out);
+            if (!output) {
+                return output.error();
+            }
+            output_.emplace(std::move(*output));
+        }
+        fs::path inside;
+        if (options_.all) {
+            inside = fs::path(entries[index].file).stem();
+            if (auto ok = output_->make_folder(inside); !ok) {
+                return ok;
+            }
+        }
+        DecodeReport report;
+        report.frame = entries[index].file;
+        report.stamp = entries[index].stamp;
+        if (auto ok = write_phase(inside, report); !ok) {
+            return ok;
+        }
+        if (chosen_.makes_depth) {
+            if (auto ok = write_depth(inside, index, report); !ok) {
+                return ok;
+            }
+        }
+        reports_.push_back(std::move(report));
+        return {};
+    }
+
+    Result<void> write(const fs::path& file, const Result<std::string>& bytes) {
+        return bytes ? output_->write(file, *bytes) : Result<void>(bytes.error());
+    }
+
+    Result<void> write_phase(const fs::path& inside, DecodeReport& report) {
+        const PhaseMap& map = chosen_.decoder.phase();
+        if (auto ok = write(inside / "modulation.png", grey_png(map.modulation.view())); !ok) {
+            return ok;
+        }
+        if (map.phase_rad.empty()) {  // a Gray code without sines
+            return {};
+        }
+        Image<float> wrapped = map.phase_rad;
+        std::size_t known = 0;
+        for (int y = 0; y < wrapped.height(); ++y) {
+            for (int x = 0; x < wrapped.width(); ++x) {
+                if (map.modulation.at(x, y) > 0.0F) {
+                    ++known;
+                } else {
+                    wrapped.at(x, y) = std::numeric_limits<float>::quiet_NaN();
+                }
+            }
+        }
+        report.valid_percent = 100.0 * static_cast<double>(known) /
+                               (static_cast<double>(wrapped.width()) * wrapped.height());
+        if (auto ok = write(inside / "wrapped.tiff", capture::encode_tiff(wrapped.view())); !ok) {
+            return ok;
+        }
+        if (chosen_.makes_depth) {
+            return {};
+        }
+        return write(inside / "preview.png",
+                     phase_preview(wrapped.view(), fmt::format("{}  wrapped phase, {:g} px",
+                                                               report.frame, map.period_px)));
+    }
+
+    Result<void> write_depth(const fs::path& inside, std::size_t index, DecodeReport& report) {
+        const DepthFrame& depth = chosen_.decoder.depth();
+        measure_depth(depth, report);
+        auto truth = measure_truth(recording_, index, depth);
+        if (!truth) {
+            return truth.error();
+        }
+        report.truth = *truth;
+        if (auto ok = write(inside / "coordinate.tiff",
+                            capture::encode_tiff(chosen_.decoder.coordinate_px().view()));
+            !ok) {
+            return ok;
+        }
+        if (auto ok = write(inside / "depth.png", capture::encode_png(depth.depth.view())); !ok) {
+            return ok;
+        }
+        const auto cloud =
+            make_point_cloud(depth, recording_.rig(), chosen_.decoder.average().view());
+        if (!cloud) {
+            return in_recording(recording_, cloud.error());
+        }
+        if (auto ok = write_ply(*cloud, output_->path() / inside / "cloud.ply"); !ok) {
+            return ok;
+        }
+        return write(
+            inside / "preview.png",
+            depth_preview(depth.depth.view(), depth.depth_unit_mm, report.low_mm, report.high_mm,
+                          fmt::format("{}  median {:.1f} mm, {:.0f} % of pixels", report.frame,
+                                      report.median_mm, report.valid_percent)));
+    }
+
+    DecodeOptions options_;
+    RecordingReader recording_;
+    Chosen chosen_;
+    OrderDepth order_;
+    std::optional<base::NewFolder> output_;
+    std::vector<DecodeReport> reports_;
+};
+
+int decode(const DecodeOptions& options) {
+    const auto recording = RecordingReader::open(options.recording);
+    if (!recording) {
+        return fail(recording.error());
+    }
+    if (recording->kind() != RecordingKind::fringe) {
+        return fail({ErrorCode::unsupported,
+                     options.recording + ": pattern.yaml is missing; decode needs fringes, replay "
+                                         "takes depth and joints"});
+    }
+    auto order = OrderDepth::open(*recording, options.order_from);
+    if (!order) {
+        return fail(order.error());
+    }
+    auto chosen = choose_decoder(*recording, options);
+    if (!chosen) {
+        return fail(chosen.error());
+    }
+    DecodeRun run(options, *recording, std::move(*chosen), std::move(*order));
+    if (auto ok = run.run(); !ok) {
+        return fail(ok.error());
+    }
+    std::fputs(run.answer().c_str(), stdout);
+    return 0;
+}
+
+}  // namespace
+
+void add_decode(CLI::App& app, int& exit_status) {
+    auto* command = app.add_subcommand(
+        "decode", "Phase, depth, point cloud and a picture of the first complete set of patterns");
+    const auto options = std::make_shared<DecodeOptions>();
+    command->add_option("REC", options->recording, "Folder of a fringe recording")->required();
+    command->add_option("--out", options->out, "Folder for the results; made whole or not at all")
+        ->required();
+    command->add_flag("--all", options->all, "Every depth image, each in a folder of its own");
+    command->add_option("--order-from", options->order_from,
+                        "Fringe order from a 16-bit depth image of 0.1 mm a step, or a folder of "
+                        "them named as the frames; such as truth/depth, also inside REC");
+    command
+        ->add_option("--min-modulation", options->min_modulation,
+                     "Fringe amplitude below which a pixel is masked, grey levels")
+        ->capture_default_str();
+    command->add_flag("--json", options->json, "The figures as one JSON object");
+    command->callback([options, &exit_status] {
+        DecodeSettings settings;
+        settings.min_modulation = options->min_modulation;
+        if (const auto ok = validate(settings); !ok) {
+            exit_status = usage(ok.error());
+            return;
+        }
+        exit_status = decode(*options);
+    });
+}
+
+}  // namespace xtrack::tools

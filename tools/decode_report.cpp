@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/decode_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace xtrack::tools {
+
+namespace {
+
+// Beyond this a pixel is not noisy but wrong: another fringe, another surface.
+constexpr double kOffBy_mm = 15.0;
+// Pixels at the edge of the hand see hand and background at once.
+constexpr int kErodeHand_px = 2;
+constexpr std::uint8_t kHandMask = 1;
+
+double percentile(std::vector<std::uint16_t>& sorted, double share) {
+    const auto last = static_cast<double>(sorted.size() - 1);
+    return sorted[static_cast<std::size_t>(std::lround(share * last))] * kDepthUnitMm;
+}
+
+std::string name_of(const Pattern& p) {
+    switch (p.kind) {
+        case PatternKind::sine: return fmt::format("sine {:g} px", p.period_px);
+        case PatternKind::rgb_sine: return fmt::format("colour sine {:g} px", p.period_px);
+        case PatternKind::gray_code: return fmt::format("Gray code {:g} px", p.cell_px);
+        case PatternKind::flat: break;
+    }
+    return "flat";
+}
+
+double percent(std::size_t part, std::size_t whole) {
+    return whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
+}
+
+}  // namespace
+
+std::string describe(const PatternSequence& patterns) {
+    std::string text;
+    for (std::size_t i = 0; i < patterns.patterns.size();) {
+        const std::string name = name_of(patterns.patterns[i]);
+        std::size_t count = 0;
+        while (i < patterns.patterns.size() && name_of(patterns.patterns[i]) == name) {
+            ++i;
+            ++count;
+        }
+        text += fmt::format("{}{} x{}", text.empty() ? "" : " + ", name, count);
+    }
+    return text;
+}
+
+void measure_depth(const DepthFrame& depth, DecodeReport& report) {
+    std::vector<std::uint16_t> values;
+    for (int y = 0; y < depth.depth.height(); ++y) {
+        const std::uint16_t* row = depth.depth.row(y);
+        std::copy_if(row, row + depth.depth.width(), std::back_inserter(values),
+                     [](std::uint16_t z) { return z != 0; });
+    }
+    report.has_depth = true;
+    report.valid_percent =
+        percent(values.size(), static_cast<std::size_t>(depth.depth.width()) *
+                                   static_cast<std::size_t>(depth.depth.height()));
+    if (values.empty()) {
+        return;
+    }
+    std::sort(values.begin(), values.end());
+    report.median_mm = percentile(values, 0.5);
+    report.low_mm = percentile(values, 0.01);
+    report.high_mm = percentile(values, 0.99);
+}
+
+Result<std::optional<TruthReport>> measure_truth(const RecordingReader& recording,
+                                                 std::size_t index, const DepthFrame& depth) {
+    if (!recording.has_truth_depth(index) || !recording.has_truth_mask(index)) {
+        return std::optional<TruthReport>{};
+    }
+    DepthFrame truth;
+    if (auto ok = recording.read_truth_depth(index, truth); !ok) {
+        return ok.error();
+    }
+    Image<std::uint8_t> mask;
+    if (auto ok = recording.read_truth_mask(index, mask); !ok) {
+        return ok.error();
+    }
+    cv::Mat hand(mask.height(), mask.width(), CV_8UC1, mask.row(0),
+                 static_cast<std::size_t>(mask.stride()));
+    hand = hand == kHandMask;
+    constexpr int kSide = 2 * kErodeHand_px + 1;
+    cv::erode(hand, hand, cv::Mat::ones(kSide, kSide, CV_8UC1));
+
+    TruthReport report;
+    std::size_t close = 0;
+    std::size_t off = 0;
+    std::size_t missing = 0;
+    double squares = 0.0;
+    for (int y = 0; y < hand.rows; ++y) {
+        for (int x = 0; x < hand.cols; ++x) {
+            if (hand.at<std::uint8_t>(y, x) == 0 || truth.depth.at(x, y) == 0) {
+                continue;
+            }
+            ++report.pixels;
+            if (depth.depth.at(x, y) == 0) {
+                ++missing;
+                continue;
+            }
+            const double error = depth.depth.at(x, y) * depth.depth_unit_mm -
+                                 truth.depth.at(x, y) * truth.depth_unit_mm;
+            if (std::abs(error) > kOffBy_mm) {
+                ++off;
+                continue;
+            }
+            ++close;
+            squares += error * error;
+        }
+    }
+    report.rms_mm = close == 0 ? 0.0 : std::sqrt(squares / static_cast<double>(close));
+    report.off_percent = percent(off, report.pixels);
+    report.missing_percent = percent(missing, report.pixels);
+    return std::optional(report);
+}
+
+std::string table_of(const std::string& method, const std::string& note,
+                     const std::vector<DecodeReport>& reports) {
+    std::string text = "method  " + method + "\n";
+    if (!note.empty()) {
+        text += "note    " + note + "\n";
+    }
+    text += fmt::format("{:<22}{:>10}{:>10}{:>10}{:>9}{:>10}{:>8}{:>10}\n", "frame", "median mm",
+                        "1 % mm", "99 % mm", "valid %", "RMS mm", "off %", "missing %");
+    for (const DecodeReport& r : reports) {
+        text += fmt::format("{:<22}", r.frame);
+        text += r.has_depth
+                    ? fmt::format("{:>10.1f}{:>10.1f}{:>10.1f}", r.median_mm, r.low_mm, r.high_mm)
+                    : fmt::format("{:>10}{:>10}{:>10}", "-", "-", "-");
+        text += fmt::format("{:>9.1f}", r.valid_percent);
+        text += r.truth ? fmt::format("{:>10.2f}{:>8.2f}{:>10.2f}", r.truth->rms_mm,
+                                      r.truth->off_percent, r.truth->missing_percent)
+                        : fmt::format("{:>10}{:>8}{:>10}", "-", "-", "-");
+        text += '\n';
+    }
+    return text;
+}
+
+std::string json_of(const std::string& method, const std::string& note,
+                    const std::vector<DecodeReport>& reports) {
+    nlohmann::ordered_json frames = nlohmann::ordered_json::array();
+    for (const DecodeReport& r : reports) {
+        nlohmann::ordered_json frame{
+            {"frame", r.frame}, {"t_us", r.stamp.us()}, {"valid_percent", r.valid_percent}};
+        if (r.has_depth) {
+            frame["median_mm"] = r.median_mm;
+            frame["p01_mm"] = r.low_mm;
+            frame["p99_mm"] = r.high_mm;
+        }
+        if (r.truth) {
+            frame["hand"] = {{"pixels", r.truth->pixels},
+                             {"rms_mm", r.truth->rms_mm},
+                             {"off_percent", r.truth->off_percent},
+                             {"missing_percent", r.truth->missing_percent}};
+        }
+        frames.push_back(frame);
+    }
+    return nlohmann::ordered_json{{"method", method}, {"note", note}, {"frames", frames}}.dump() +
+           "\n";
+}
+
+}  // namespace xtrack::tools
