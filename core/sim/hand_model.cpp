@@ -106,8 +106,8 @@ constexpr float kBlendKnuckleMm = 11.0F;
 constexpr float kBlendPhalanxMm = 7.5F;
 constexpr float kBlendThumbRootMm = 20.0F;
 constexpr float kBlendElbowMm = 45.0F;
-constexpr float kWristBlendBelowMm = -24.0F;
-constexpr float kWristBlendAboveMm = 12.0F;
+constexpr float kWristBlendBelowMm = -48.0F;
+constexpr float kWristBlendAboveMm = 22.0F;
 // Skin between two fingers follows the nearer one; this says how sharply.
 constexpr float kNeighbourSoftnessMm = 2.0F;
 constexpr float kThumbSoftnessMm = 5.0F;
@@ -209,21 +209,6 @@ std::vector<float> arm_planes() {
     return ys;
 }
 
-}  // namespace
-
-const std::array<FingerRest, kSimFingerCount>& finger_rest() { return kFingerRest; }
-
-const std::array<std::array<float, kBonesPerFinger + 1>, kSimFingerCount>& finger_radius() {
-    return kFingerRadius;
-}
-
-Vec3f pad_direction(std::size_t finger, std::size_t segment_index) {
-    const auto& joint = kFingerRest[finger];
-    const Vec3f axis = (joint[segment_index + 1] - joint[segment_index]).normalized();
-    const Vec3f wish = finger == kThumb ? kThumbPad : Vec3f(0.0F, 0.0F, 1.0F);
-    return (wish - axis * wish.dot(axis)).normalized();
-}
-
 HandModel build_hand_model() {
     constexpr float kStepMm = 3.0F;
     constexpr float kForearmPartBelowMm = -4.0F;
@@ -268,6 +253,26 @@ HandModel build_hand_model() {
             }
         }
     }
+    return model;
+}
+
+}  // namespace
+
+const std::array<FingerRest, kSimFingerCount>& finger_rest() { return kFingerRest; }
+
+const std::array<std::array<float, kBonesPerFinger + 1>, kSimFingerCount>& finger_radius() {
+    return kFingerRadius;
+}
+
+Vec3f pad_direction(std::size_t finger, std::size_t segment_index) {
+    const auto& joint = kFingerRest[finger];
+    const Vec3f axis = (joint[segment_index + 1] - joint[segment_index]).normalized();
+    const Vec3f wish = finger == kThumb ? kThumbPad : Vec3f(0.0F, 0.0F, 1.0F);
+    return (wish - axis * wish.dot(axis)).normalized();
+}
+
+const HandModel& hand_model() {
+    static const HandModel model = build_hand_model();
     return model;
 }
 

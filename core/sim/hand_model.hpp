@@ -55,7 +55,8 @@ using FingerRest = std::array<Vec3f, kBonesPerFinger + 1>;
 [[nodiscard]] const std::array<std::array<float, kBonesPerFinger + 1>, kSimFingerCount>&
 finger_radius();
 
-/// Makes the mesh: one smooth skin over all bones, no seams.
-[[nodiscard]] HandModel build_hand_model();
+/// One smooth skin over all bones, no seams. Made at the first call, the same for everybody.
+/// @thread any
+[[nodiscard]] const HandModel& hand_model();
 
 }  // namespace xtrack::sim

@@ -100,7 +100,7 @@ PosedBones pose_bones(const HandPose& pose, SimHand hand, float scale) {
     std::array<Affine, kBoneCount> local;
     const Vec3f wrist = camera_from_local.offset;
     Vec3f shoulder = pose.shoulder_mm;
-    const Vec3f pole{-0.55F * side, 0.85F, -0.1F};
+    const Vec3f pole{-0.22F * side, 0.97F, 0.1F};
     const Vec3f elbow =
         place_elbow(shoulder, wrist, pole, kForearmLengthMm * scale, kUpperArmLengthMm * scale);
     const auto to_local = [&](const Vec3f& camera) {

@@ -23,44 +23,48 @@ struct PixelRect {
     [[nodiscard]] bool empty() const noexcept { return x0 >= x1 || y0 >= y1; }
 };
 
-[[nodiscard]] inline PixelRect unite(const PixelRect& a, const PixelRect& b) noexcept {
-    if (a.empty()) {
-        return b;
-    }
-    if (b.empty()) {
-        return a;
-    }
-    return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
-}
+/// Nothing yet: what raster_triangle() grows from.
+inline constexpr PixelRect kNoPixels{1 << 30, 1 << 30, -(1 << 30), -(1 << 30)};
 
-/// Corners are rounded to this part of a pixel, so that neighbours share exact edges: no cracks.
-inline constexpr float kSubPixels = 256.0F;
+/// A corner rounded to 1/256 of a pixel, so that neighbours share exact edges: no cracks.
+struct Corner {
+    std::int32_t x = 0;
+    std::int32_t y = 0;
+};
+inline constexpr int kSubPixelBits = 8;
+
+[[nodiscard]] inline std::int32_t snap(float v_px) noexcept {
+    constexpr float kSubPixels = 1 << kSubPixelBits;
+    constexpr float kFarOffPx = 1.0e6F;  // keeps differences within 32 bits, products within 64
+    return static_cast<std::int32_t>(
+        std::floor(std::clamp(v_px, -kFarOffPx, kFarOffPx) * kSubPixels + 0.5F));
+}
+[[nodiscard]] inline Corner snap(const ScreenPoint& p) noexcept { return {snap(p.x), snap(p.y)}; }
 
 /// Calls `pixel(x, y, w0, w1, w2)` for each pixel centre in the triangle, edges included, with its
 /// barycentric weights. Triangles that are clockwise on the screen (y down) are not drawn.
+/// @param touched grows by the pixels that may have been drawn
 template <typename Pixel>
-void raster_triangle(const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c,
-                     const PixelRect& clip, Pixel&& pixel) {
-    // Pinned to the whole pixels around the triangle first: 32 bits do for small triangles, 64 hold
-    // any that is in reach of an image.
-    const auto fix = [](float v) { return static_cast<std::int64_t>(std::lrintf(v * kSubPixels)); };
-    constexpr auto kOne = static_cast<std::int64_t>(kSubPixels);
-    const std::array<std::int64_t, 3> x{fix(a.x), fix(b.x), fix(c.x)};
-    const std::array<std::int64_t, 3> y{fix(a.y), fix(b.y), fix(c.y)};
+void raster_triangle(const Corner& a, const Corner& b, const Corner& c, const PixelRect& clip,
+                     PixelRect& touched, Pixel&& pixel) {
     // Twice the area, positive when the corners go round counter-clockwise to a viewer.
-    const std::int64_t area = (x[2] - x[0]) * (y[1] - y[0]) - (x[1] - x[0]) * (y[2] - y[0]);
+    const std::int64_t area =
+        std::int64_t{c.x - a.x} * (b.y - a.y) - std::int64_t{b.x - a.x} * (c.y - a.y);
     if (area <= 0) {
         return;
     }
-    const auto ceil_px = [](std::int64_t v) { return static_cast<int>((v + kOne - 1) >> 8); };
-    const auto floor_px = [](std::int64_t v) { return static_cast<int>(v >> 8); };
-    const int x0 = std::max(clip.x0, ceil_px(std::min({x[0], x[1], x[2]})));
-    const int x1 = std::min(clip.x1 - 1, floor_px(std::max({x[0], x[1], x[2]})));
-    const int y0 = std::max(clip.y0, ceil_px(std::min({y[0], y[1], y[2]})));
-    const int y1 = std::min(clip.y1 - 1, floor_px(std::max({y[0], y[1], y[2]})));
+    constexpr std::int32_t kOne = 1 << kSubPixelBits;
+    const int x0 = std::max(clip.x0, (std::min({a.x, b.x, c.x}) + kOne - 1) >> kSubPixelBits);
+    const int x1 = std::min(clip.x1 - 1, std::max({a.x, b.x, c.x}) >> kSubPixelBits);
+    const int y0 = std::max(clip.y0, (std::min({a.y, b.y, c.y}) + kOne - 1) >> kSubPixelBits);
+    const int y1 = std::min(clip.y1 - 1, std::max({a.y, b.y, c.y}) >> kSubPixelBits);
     if (x0 > x1 || y0 > y1) {
         return;
     }
+    touched = {std::min(touched.x0, x0), std::min(touched.y0, y0), std::max(touched.x1, x1 + 1),
+               std::max(touched.y1, y1 + 1)};
+    const std::array<std::int64_t, 3> x{a.x, b.x, c.x};
+    const std::array<std::int64_t, 3> y{a.y, b.y, c.y};
     // Edge functions: edge i is opposite corner i.
     std::array<std::int64_t, 3> row{};
     std::array<std::int64_t, 3> step_x{};
@@ -70,7 +74,7 @@ void raster_triangle(const ScreenPoint& a, const ScreenPoint& b, const ScreenPoi
         const std::size_t q = (i + 2) % 3;
         const std::int64_t dx = x[q] - x[p];
         const std::int64_t dy = y[q] - y[p];
-        row[i] = dx * (y[p] - kOne * y0) - dy * (x[p] - kOne * x0);
+        row[i] = dx * (y[p] - std::int64_t{kOne} * y0) - dy * (x[p] - std::int64_t{kOne} * x0);
         step_x[i] = dy * kOne;
         step_y[i] = -dx * kOne;
     }

@@ -52,28 +52,22 @@ Body build_body(const SimSettings& settings) {
     return body;
 }
 
-struct Projected {
-    ScreenPoint at;
-    float depth_mm;
-};
-
-void cast_body(const Body& body, const Lamp& lamp, Image<float>& shadow) {
-    const PixelRect clip{0, 0, lamp.size().width, lamp.size().height};
-    std::vector<Projected> corner;
+void cast_body(const Body& body, const Lamp& lamp, std::vector<float>& shadow_mm) {
+    const PixelRect clip{0, 0, lamp.map_size().width, lamp.map_size().height};
+    PixelRect touched = kNoPixels;
+    std::vector<Corner> corners;
+    std::vector<float> depth_mm;
     for (const Vec3f& p : body.mesh.positions_mm) {
-        Projected q{};
-        q.at = lamp.project(p, q.depth_mm);
-        corner.push_back(q);
+        depth_mm.push_back(0.0F);
+        corners.push_back(snap(lamp.project_to_map(p, depth_mm.back())));
     }
     for (const auto& t : body.mesh.triangles) {
-        const Projected& a = corner[t[0]];
-        const Projected& b = corner[t[1]];
-        const Projected& c = corner[t[2]];
-        raster_triangle(a.at, b.at, c.at, clip, [&](int x, int y, float w0, float w1, float w2) {
-            const float z = w0 * a.depth_mm + w1 * b.depth_mm + w2 * c.depth_mm;
-            float& nearest = shadow.at(x, y);
-            nearest = std::min(nearest, z);
-        });
+        raster_triangle(corners[t[0]], corners[t[1]], corners[t[2]], clip, touched,
+                        [&](int x, int y, float w0, float w1, float w2) {
+                            float& nearest = shadow_mm[static_cast<std::size_t>(y * clip.x1 + x)];
+                            nearest = std::min(nearest, w0 * depth_mm[t[0]] + w1 * depth_mm[t[1]] +
+                                                            w2 * depth_mm[t[2]]);
+                        });
     }
 }
 
@@ -105,16 +99,17 @@ void see_wall(const SimSettings& settings, StaticScene& scene, std::vector<Seen>
 
 void see_body(const Body& body, const Lens& camera, StaticScene& scene, std::vector<Seen>& seen) {
     const Mesh& mesh = body.mesh;
-    std::vector<ScreenPoint> corner;
+    PixelRect touched = kNoPixels;
+    std::vector<Corner> corner;
     for (const Vec3f& p : mesh.positions_mm) {
-        corner.push_back(camera.project(p));
+        corner.push_back(snap(camera.project(p)));
     }
     for (const auto& t : mesh.triangles) {
         const float za = 1.0F / mesh.positions_mm[t[0]].z();
         const float zb = 1.0F / mesh.positions_mm[t[1]].z();
         const float zc = 1.0F / mesh.positions_mm[t[2]].z();
         raster_triangle(
-            corner[t[0]], corner[t[1]], corner[t[2]], camera.frame(),
+            corner[t[0]], corner[t[1]], corner[t[2]], camera.frame(), touched,
             [&](int x, int y, float w0, float w1, float w2) {
                 const float z = 1.0F / (w0 * za + w1 * zb + w2 * zc);
                 if (z >= scene.depth_mm.at(x, y)) {
@@ -174,8 +169,7 @@ Lit Lamp::at(const Vec3f& point_mm, const Vec3f& normal, float albedo) const {
     const float coded = axis_ == Axis::x ? s.x : s.y;
     const int last = (axis_ == Axis::x ? lens_.size().width : lens_.size().height) - 1;
     lit.coordinate_px = std::clamp(coded, 0.0F, static_cast<float>(last));
-    lit.cell = static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(lens_.size().width) +
-               static_cast<std::uint32_t>(x);
+    lit.cell = static_cast<std::uint32_t>(y / kShadowCellPx * map_size().width + x / kShadowCellPx);
     return lit;
 }
 
@@ -197,7 +191,9 @@ StaticScene build_static_scene(const SimSettings& settings, const Lens& camera, 
             scene.ray_y.at(x, y) = ray.y();
         }
     }
-    scene.shadow_mm = Image<float>(lamp.size().width, lamp.size().height, kFarAway);
+    scene.shadow_mm.assign(static_cast<std::size_t>(lamp.map_size().width) *
+                               static_cast<std::size_t>(lamp.map_size().height),
+                           kFarAway);
     std::vector<Seen> seen(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     see_wall(settings, scene, seen);
     if (settings.user.visible_body) {
@@ -213,10 +209,8 @@ StaticScene build_static_scene(const SimSettings& settings, const Lens& camera, 
             const Vec3f p = Vec3f(scene.ray_x.at(x, y), scene.ray_y.at(x, y), 1.0F) * z;
             Lit lit = lamp.at(p, s.normal, s.albedo);
             if (lit.cell != kUnlit) {
-                const int shadow_x = static_cast<int>(lit.cell) % lamp.size().width;
-                const int shadow_y = static_cast<int>(lit.cell) / lamp.size().width;
                 constexpr float kBodySlackMm = 3.0F * kShadowSlackMm;  // coarser facets
-                if (scene.shadow_mm.at(shadow_x, shadow_y) < lit.depth_mm - kBodySlackMm) {
+                if (scene.shadow_mm[lit.cell] < lit.depth_mm - kBodySlackMm) {
                     lit.light = 0.0F;
                     lit.cell = kUnlit;
                 }

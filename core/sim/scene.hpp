@@ -21,11 +21,14 @@ inline constexpr std::uint32_t kUnlit = 0xFFFFFFFFU;
 using Tint = std::array<float, kMaxChannels>;
 [[nodiscard]] Tint tint_of(SimPart part, bool colour);
 
+/// Two projector pixels are about one camera pixel on a hand.
+inline constexpr int kShadowCellPx = 2;
+
 /// Where the projector's light meets a point.
 struct Lit {
     float light = 0.0F;          ///< grey levels at full level; 0 = turned away or out of its frame
     float coordinate_px = 0.0F;  ///< along the coded axis
-    std::uint32_t cell = kUnlit;  ///< of the shadow map
+    std::uint32_t cell = kUnlit;  ///< of the shadow map, row by row
     float depth_mm = 0.0F;        ///< projector Z
 };
 
@@ -43,6 +46,16 @@ class Lamp {
         return p.z() > kNearMm ? lens_.project(p) : ScreenPoint{-kOutside, -kOutside};
     }
     [[nodiscard]] Size size() const noexcept { return lens_.size(); }
+    /// The same point on the shadow map, whose cells are kShadowCellPx projector pixels wide.
+    [[nodiscard]] ScreenPoint project_to_map(const Vec3f& point_mm, float& depth_mm) const {
+        const ScreenPoint p = project(point_mm, depth_mm);
+        constexpr float kScale = 1.0F / kShadowCellPx;
+        return {(p.x + 0.5F) * kScale - 0.5F, (p.y + 0.5F) * kScale - 0.5F};
+    }
+    [[nodiscard]] Size map_size() const noexcept {
+        return {(lens_.size().width + kShadowCellPx - 1) / kShadowCellPx,
+                (lens_.size().height + kShadowCellPx - 1) / kShadowCellPx};
+    }
 
  private:
     static constexpr float kNearMm = 50.0F;
@@ -72,7 +85,7 @@ struct StaticScene {
     Image<std::uint32_t> cell;        ///< Lit::cell
     Image<float> projector_depth_mm;  ///< Lit::depth_mm
     Image<float> ambient;             ///< grey levels
-    Image<float> shadow_mm;           ///< the body's projector Z, projector image shape
+    std::vector<float> shadow_mm;     ///< the body's projector Z, one a cell of the shadow map
 };
 
 [[nodiscard]] StaticScene build_static_scene(const SimSettings& settings, const Lens& camera,

@@ -20,7 +20,7 @@ constexpr double kProjectorFocalPx = 1000.0;
 constexpr Size kProjectorSize{1024, 768};
 constexpr double kBaselineMm = 200.0;
 constexpr double kProjectorPitchRad = 0.22;
-constexpr WorkingVolume kVolume{450.0, 1600.0};
+constexpr WorkingVolume kVolume{400.0, 1600.0};
 
 Rig default_rig() {
     Rig rig;
@@ -119,8 +119,8 @@ void SimSettings::vary(std::uint64_t new_seed) {
     user.hand_y_mm = random.between(10.0, 40.0);
     user.chest_distance_mm = random.between(900.0, 980.0);
     user.clothing_albedo = random.between(0.2, 0.55);
-    room.wall_distance_mm = random.between(1250.0, 1500.0);
-    room.wall_yaw_rad = random.between(-0.15, 0.15);
+    room.wall_distance_mm = random.between(1250.0, 1450.0);
+    room.wall_yaw_rad = random.between(-0.10, 0.10);
     room.ambient_grey = random.between(6.0, 18.0);
     clocks.phase_s = random.between(0.0, 30e-3);
     script = demo_script(hand);
@@ -194,6 +194,11 @@ Result<void> SimSettings::validate() const {
         return Error{ErrorCode::invalid_argument,
                      "simulation: clocks.locked needs a global shutter (camera.readout_s 0) and "
                      "clocks.hold_frames 1; set them, or locked = false"};
+    }
+    if (script.empty() && duration_s == 0.0) {
+        return Error{ErrorCode::invalid_argument,
+                     "simulation: duration_s is 0 (until the script is over) and there is no "
+                     "script; give one of them"};
     }
     for (const SimStep& step : script) {
         const bool lasts = step.action == SimAction::idle || step.action == SimAction::wander;

@@ -50,6 +50,7 @@ class SimulatedRig::Impl {
     std::vector<SimLabel> labels;
     std::uint64_t frames = 0;
     std::uint64_t next_frame = 0;
+    std::uint64_t given_frame = 0;
     bool truth_made = false;
     SimTruth truth;
 };
@@ -97,6 +98,7 @@ FrameSource::Item SimulatedRig::next(Duration /*timeout*/) {
     frame->clean_row_end = seen.clean_row_end;
     s.renderer.expose(sequence, s.sensor.light());
     s.sensor.read_out(sequence, frame->pixels.view());
+    s.given_frame = sequence;
     s.truth_made = false;
     item.status = SourceStatus::ok;
     item.frame = std::move(frame);
@@ -106,8 +108,8 @@ FrameSource::Item SimulatedRig::next(Duration /*timeout*/) {
 const SimTruth& SimulatedRig::truth() {
     Impl& s = *impl_;
     if (!s.truth_made && s.next_frame > 0) {
-        s.renderer.draw_geometry(s.next_frame - 1);
-        s.truth_maker.make(s.renderer, s.next_frame - 1, s.truth);
+        s.renderer.draw_geometry(s.given_frame);
+        s.truth_maker.make(s.renderer, s.given_frame, s.truth);
         s.truth_made = true;
     }
     return s.truth;

@@ -51,8 +51,10 @@ void transform_line(float* values, int count, int stride, std::vector<float>& li
     }
 }
 
-bool is_hand(const Surfel& s, std::size_t hand, float background_mm) {
-    return s.part == SimPart::hand && s.hand == hand && s.depth_mm < background_mm;
+bool is_hand(const Renderer& renderer, int x, int y, std::size_t hand) {
+    const Surfel& s = renderer.surfels().at(x, y);
+    return s.depth_mm < renderer.scene().depth_mm.at(x, y) && renderer.hand_of(s) == hand &&
+           renderer.part_of(s) == SimPart::hand;
 }
 
 }  // namespace
@@ -69,6 +71,9 @@ TruthMaker::TruthMaker(const Renderer& renderer) {
 void TruthMaker::find_palm(const Renderer& renderer, std::size_t hand, const SimTruth& truth,
                            SimHandTruth& out) {
     const PixelRect& box = renderer.drawn();
+    if (box.empty()) {
+        return;
+    }
     // One pixel of border all round: the image's edge cuts a hand as its outline does.
     const int width = box.x1 - box.x0 + 2;
     const int height = box.y1 - box.y0 + 2;
@@ -77,7 +82,7 @@ void TruthMaker::find_palm(const Renderer& renderer, std::size_t hand, const Sim
               0.0F);
     for (int y = box.y0; y < box.y1; ++y) {
         for (int x = box.x0; x < box.x1; ++x) {
-            if (is_hand(renderer.surfels().at(x, y), hand, renderer.scene().depth_mm.at(x, y))) {
+            if (is_hand(renderer, x, y, hand)) {
                 distance2_[static_cast<std::size_t>((y - box.y0 + 1) * width + x - box.x0 + 1)] =
                     kInside;
                 out.in_view = true;
@@ -122,8 +127,8 @@ void TruthMaker::make(const Renderer& renderer, std::uint64_t frame, SimTruth& t
             const double z = moving ? s.depth_mm : background;
             const double steps = std::min(z / kDepthUnitMm + 0.5, 65535.0);
             truth.depth.at(x, y) = static_cast<std::uint16_t>(steps);
-            truth.mask.at(x, y) =
-                moving ? static_cast<std::uint8_t>(s.part) : renderer.scene().part.at(x, y);
+            truth.mask.at(x, y) = moving ? static_cast<std::uint8_t>(renderer.part_of(s))
+                                         : renderer.scene().part.at(x, y);
         }
     }
     truth.hand_count = renderer.hands().size();
@@ -154,9 +159,9 @@ void TruthMaker::make(const Renderer& renderer, std::uint64_t frame, SimTruth& t
                         continue;
                     }
                     const Surfel& near = renderer.surfels().at(x, y);
-                    out.tip_visible[f] = out.tip_visible[f] ||
-                                         (is_hand(near, h, renderer.scene().depth_mm.at(x, y)) &&
-                                          std::abs(near.depth_mm - tip.z()) < kSameSurfaceMm);
+                    out.tip_visible[f] =
+                        out.tip_visible[f] || (is_hand(renderer, x, y, h) &&
+                                               std::abs(near.depth_mm - tip.z()) < kSameSurfaceMm);
                 }
             }
         }

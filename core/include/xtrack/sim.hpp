@@ -110,7 +110,7 @@ struct SimSettings {
     SimProjector projector;
     SimCamera camera;
     SimClocks clocks;
-    std::vector<SimStep> script;  ///< at most two hands; empty = nobody's hand comes
+    std::vector<SimStep> script;  ///< empty = nobody's hand comes
 
     /// @param name `ideal-60` (global shutter, locked, grey) or `webcam-30` (rolling shutter, free
     ///        clocks, YUYV colour); both with demo_script().
