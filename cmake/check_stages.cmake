@@ -36,7 +36,7 @@ foreach(file ${files})
     if(NOT own)
       message(NOTICE "${file}:1: error: a public header of no stage; add `${name}` to the "
                      "XTRACK_HEADERS_<stage> it belongs to in cmake/Stages.cmake")
-      math(EXPR faults "${faults} + 0")
+      math(EXPR faults "${faults} + 1")
       continue()
     endif()
     if(NOT own MATCHES "^${part}/")

@@ -17,6 +17,6 @@ cmake -S "$sources" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_
     -DXTRACK_WITH_OPENCV=OFF -DXTRACK_WITH_TOOLS=OFF -DXTRACK_WITH_TESTS=ON -DXTRACK_DEVELOPER=ON \
     >"$build/log" 2>&1 || { cat "$build/log"; exit 1; }
 cmake --build "$build" >"$build/log" 2>&1 || { tail -n 40 "$build/log"; exit 1; }
-ctest --test-dir "$build" -L '^unit$' --no-tests=error --output-on-failure \
+ctest --test-dir "$build" -L '^unit$' --no-tests=error --output-on-failure --timeout 120 \
     -j "${CTEST_PARALLEL_LEVEL:-2}" >"$build/log" 2>&1 || { tail -n 60 "$build/log"; exit 1; }
 tail -n 5 "$build/log"
