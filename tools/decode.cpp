@@ -95,6 +95,7 @@ Result<Chosen> choose_decoder(const RecordingReader& recording, const DecodeOpti
     settings.min_modulation = options.min_modulation;
     // One set of patterns is all there is to the first depth; a stream has more to average over.
     settings.taps = options.all ? PhaseTaps::automatic : PhaseTaps::least_squares;
+    settings.motion = options.all ? MotionHandling::follow : MotionHandling::off;
     const auto create = [&](OrderSource order) {
         settings.order = order;
         return DepthDecoder::create(recording.rig(), recording.patterns(), recording.image_size(),
@@ -174,14 +175,16 @@ class DecodeRun {
     }
 
  private:
-    // The depth that orders a window is that of its centre, the frame the result belongs to.
+    // The depth that gives the order is that of the frame which the result will belong to: the
+    // newest one where motion is followed, else the centre of the window.
     Result<void> give_order(std::size_t newest) {
         if (!order_.wanted()) {
             return {};
         }
         const auto window = static_cast<std::size_t>(std::max(1, chosen_.decoder.frames_needed()));
-        const std::size_t centre = newest - std::min(newest, (window - 1) / 2);
-        const auto depth = order_.of(recording_, centre);
+        const std::size_t back = options_.all ? 0 : (window - 1) / 2;
+        const std::size_t frame = newest - std::min(newest, back);
+        const auto depth = order_.of(recording_, frame);
         if (!depth) {
             return depth.error();
         }

@@ -51,7 +51,7 @@ Result<std::string> with_legend(const Levels& levels, int map, double top, doubl
     const auto px = [scale](double v) { return static_cast<int>(std::lround(v * scale)); };
     const int height = levels.value.rows;
     const int width = levels.value.cols;
-    cv::Mat picture(height + px(28), width + px(110), CV_8UC3, cv::Scalar(28, 28, 28));
+    cv::Mat picture(height + px(28), width + px(140), CV_8UC3, cv::Scalar(28, 28, 28));
 
     cv::Mat image = picture(cv::Rect(0, px(28), width, height));
     image.setTo(cv::Scalar(0, 0, 0));

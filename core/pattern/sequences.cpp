@@ -18,12 +18,15 @@ constexpr int kGridSteps = 16;
 // An axis along which the whole volume moves less than this measures no depth.
 constexpr double kMinParallax_px = 2.0;
 
+// Written so that the first phase is 0 and not -0.
+double step_phase_rad(int step, int steps) { return 0.0 - 2.0 * std::numbers::pi * step / steps; }
+
 void append_steps(PatternSequence& s, double period_px, int steps) {
     for (int i = 0; i < steps; ++i) {
         Pattern p;
         p.kind = PatternKind::sine;
         p.period_px = period_px;
-        p.phase_rad[0] = -2.0 * std::numbers::pi * i / steps;
+        p.phase_rad[0] = step_phase_rad(i, steps);
         s.patterns.push_back(p);
     }
 }
@@ -90,7 +93,7 @@ PatternSequence rgb_sequence(Axis axis, Size projector_size,
         p.kind = PatternKind::rgb_sine;
         p.period_px = period_px;
         for (int i = 0; i < 3; ++i) {
-            p.phase_rad[static_cast<std::size_t>(i)] = -2.0 * std::numbers::pi * i / 3.0;
+            p.phase_rad[static_cast<std::size_t>(i)] = step_phase_rad(i, 3);
         }
         s.patterns.push_back(p);
     }

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/base/file.hpp"
+
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace xtrack::base {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+// A folder of its own for each test, empty and removed after it.
+class FileTest : public testing::Test {
+ protected:
+    FileTest() {
+        const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+        folder_ = fs::path(testing::TempDir()) / (std::string("xtrack_file_") + test->name());
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+    }
+    ~FileTest() override { fs::remove_all(folder_); }
+    [[nodiscard]] std::size_t entries() const {
+        return static_cast<std::size_t>(
+            std::distance(fs::directory_iterator(folder_), fs::directory_iterator{}));
+    }
+    fs::path folder_;
+};
+
+TEST_F(FileTest, WritesWholeAndForTheOwnerAlone) {
+    const fs::path file = folder_ / "a.txt";
+    ASSERT_TRUE(write_file(file, "one").ok());
+    ASSERT_TRUE(write_file(file, "two").ok());
+    EXPECT_EQ(*read_file(file, 3), "two");
+    EXPECT_EQ(entries(), 1U);
+#ifndef _WIN32
+    EXPECT_EQ(fs::status(file).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+#endif
+}
+
+TEST_F(FileTest, RefusesWhatItCannotRead) {
+    ASSERT_TRUE(write_file(folder_ / "big", "12345").ok());
+    const auto big = read_file(folder_ / "big", 4);
+    ASSERT_FALSE(big.ok());
+    EXPECT_THAT(big.error().message, HasSubstr("5 bytes long; at most 4"));
+    EXPECT_EQ(read_file(folder_ / "none", 4).error().code, ErrorCode::not_found);
+    EXPECT_EQ(read_file(folder_, 4).error().code, ErrorCode::io);
+    EXPECT_FALSE(write_file(folder_ / "none" / "a", "x").ok());
+}
+
+TEST_F(FileTest, NewFolderAppearsAtCommit) {
+    auto made = NewFolder::create(folder_ / "out/");
+    ASSERT_TRUE(made.ok()) << made.error().message;
+    ASSERT_TRUE(made->make_folder("a/b").ok());
+    ASSERT_TRUE(made->write("a/b/c.txt", "x").ok());
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+    ASSERT_TRUE(made->commit().ok());
+    EXPECT_EQ(*read_file(folder_ / "out/a/b/c.txt", 9), "x");
+    EXPECT_EQ(entries(), 1U);
+}
+
+TEST_F(FileTest, NewFolderLeavesNothingWithoutCommit) {
+    {
+        auto made = NewFolder::create(folder_ / "out");
+        ASSERT_TRUE(made.ok());
+        ASSERT_TRUE(made->write("c.txt", "x").ok());
+        EXPECT_EQ(entries(), 1U);
+    }
+    EXPECT_EQ(entries(), 0U);
+}
+
+TEST_F(FileTest, NewFolderReplacesOnlyWhenTold) {
+    fs::create_directory(folder_ / "out");
+    std::ofstream(folder_ / "out" / "old.txt") << "old";
+    EXPECT_FALSE(NewFolder::create(folder_ / "out").ok());
+    auto made = NewFolder::create(folder_ / "out", NewFolder::Existing::replace);
+    ASSERT_TRUE(made.ok());
+    ASSERT_TRUE(made->write("new.txt", "x").ok());
+    EXPECT_TRUE(fs::exists(folder_ / "out" / "old.txt"));
+    ASSERT_TRUE(made->commit().ok());
+    EXPECT_FALSE(fs::exists(folder_ / "out" / "old.txt"));
+    EXPECT_TRUE(fs::exists(folder_ / "out" / "new.txt"));
+    EXPECT_EQ(entries(), 1U);
+    EXPECT_FALSE(NewFolder::create(folder_ / "missing" / "out").ok());
+}
+
+TEST(StaysInside, KnowsEscapes) {
+    for (const char* good : {"a.png", "frames/000.png", "a..b/c", ".hidden"}) {
+        EXPECT_TRUE(stays_inside(good)) << good;
+    }
+    for (const char* bad : {"", "/etc/passwd", "../a", "../../etc/passwd", "a/../../b", "a/..",
+                            "..\\a", "C:\\a", "\\\\host\\a", "a//b", "a:b", "frames/"}) {
+        EXPECT_FALSE(stays_inside(bad)) << bad;
+    }
+    EXPECT_FALSE(stays_inside(std::string_view("a\0b", 3)));
+}
+
+}  // namespace
+}  // namespace xtrack::base

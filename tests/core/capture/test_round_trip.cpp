@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <xtrack/null_source.hpp>
+#include <xtrack/recording.hpp>
+
+#include "tests/core/capture/small_recording.hpp"
+
+namespace xtrack {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+template <typename T>
+void expect_same_pixels(const Image<T>& a, const Image<T>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (int y = 0; y < a.height(); ++y) {
+        for (int x = 0; x < a.width(); ++x) {
+            ASSERT_EQ(a.at(x, y), b.at(x, y)) << x << " " << y;
+        }
+    }
+}
+
+using RoundTrip = RecordingTest;
+
+TEST_F(RoundTrip, FringesComeBackBitForBit) {
+    const auto patterns = dual_sequence(Axis::y, {1024, 768}, 320.0, 32.0);
+    auto writer = RecordingWriter::create(folder_ / "rec", {small_rig(), patterns});
+    ASSERT_TRUE(writer.ok()) << writer.error().message;
+    for (int i = 0; i < 20; ++i) {
+        ASSERT_TRUE(writer->add(small_frame(i, i % 7 == 6 ? kUnknownPattern : i % 6)).ok());
+    }
+    Image<std::uint16_t> truth(16, 12, 7721);
+    Image<std::uint8_t> mask(16, 12, 1);
+    ASSERT_TRUE(writer->add_truth(truth.view(), mask.view()).ok());
+    ASSERT_TRUE(writer->add_text("labels.csv", "gesture,hand,start_us,end_us\n").ok());
+    ASSERT_TRUE(writer->add_text("truth/hands.csv", "t_us\n").ok());
+    EXPECT_FALSE(writer->add_text("../out.txt", "x").ok());
+    EXPECT_FALSE(fs::exists(folder_ / "rec"));
+    ASSERT_TRUE(writer->close().ok());
+
+    const auto recording = RecordingReader::open(folder_ / "rec");
+    ASSERT_TRUE(recording.ok()) << recording.error().message;
+    EXPECT_EQ(recording->kind(), RecordingKind::fringe);
+    EXPECT_EQ(recording->patterns(), patterns);
+    ASSERT_TRUE(recording->has_rig());
+    const Rig rig = small_rig();
+    EXPECT_EQ(recording->rig().camera.matrix, rig.camera.matrix);
+    EXPECT_EQ(recording->rig().camera.distortion, rig.camera.distortion);
+    EXPECT_EQ(recording->rig().projector->size, rig.projector->size);
+    EXPECT_EQ(recording->rig().projector_from_camera_T, rig.projector_from_camera_T);
+    EXPECT_EQ(*recording->rig().interaction_from_camera, *rig.interaction_from_camera);
+    EXPECT_EQ(recording->rig().working_volume->far_mm, 2000.0);
+    EXPECT_TRUE(recording->labels_file().has_value());
+    EXPECT_TRUE(recording->truth_hands_file().has_value());
+    EXPECT_FALSE(recording->joints_file().has_value());
+
+    auto source = frame_source(*recording);
+    ASSERT_TRUE(source.ok());
+    std::vector<FramePtr> kept;  // more than the pool holds: none may be dropped or overwritten
+    for (int i = 0; i < 20; ++i) {
+        const auto item = (*source)->next(Duration::zero());
+        ASSERT_EQ(item.status, SourceStatus::ok) << item.message;
+        kept.push_back(item.frame);
+    }
+    EXPECT_EQ((*source)->next(Duration::zero()).status, SourceStatus::end);
+    for (int i = 0; i < 20; ++i) {
+        const FramePtr& frame = kept[static_cast<std::size_t>(i)];
+        EXPECT_EQ(frame->pattern, i % 7 == 6 ? kUnknownPattern : i % 6);
+        EXPECT_EQ(frame->stamp, Stamp::from_us(i * 16667));
+        EXPECT_EQ(frame->sequence, static_cast<std::uint64_t>(i));
+        EXPECT_EQ(frame->clean_row_end, 12);
+        expect_same_pixels(frame->pixels, small_frame(i, 0).pixels);
+    }
+
+    // The only truth there is serves every frame: the scene does not move.
+    DepthFrame depth;
+    Image<std::uint8_t> parts;
+    ASSERT_TRUE(recording->has_truth_depth(0));
+    ASSERT_TRUE(recording->read_truth_depth(0, depth).ok());
+    ASSERT_TRUE(recording->read_truth_mask(19, parts).ok());
+    expect_same_pixels(depth.depth, truth);
+    expect_same_pixels(parts, mask);
+}
+
+TEST_F(RoundTrip, ColourFringesComeBackBitForBit) {
+    auto writer = RecordingWriter::create(folder_ / "rec",
+                                          {{}, rgb_sequence(Axis::x, {1024, 768}, {768.0, 96.0})});
+    ASSERT_TRUE(writer.ok());
+    const Frame colour = small_frame(0, 1, PixelFormat::bgr8);
+    ASSERT_TRUE(writer->add(colour).ok());
+    ASSERT_TRUE(writer->close().ok());
+    const auto recording = RecordingReader::open(folder_ / "rec");
+    ASSERT_TRUE(recording.ok()) << recording.error().message;
+    EXPECT_FALSE(recording->has_rig());
+    EXPECT_EQ(recording->image_size(), (Size{16, 12}));
+    Frame back;
+    ASSERT_TRUE(recording->read_frame(0, back).ok());
+    EXPECT_EQ(back.format, PixelFormat::bgr8);
+    expect_same_pixels(back.pixels, colour.pixels);
+}
+
+TEST_F(RoundTrip, GreyPatternsInColourImagesAreReadAsLuma) {
+    auto writer = RecordingWriter::create(folder_ / "rec",
+                                          {{}, three_step_sequence(Axis::x, {64, 48}, 16.0)});
+    ASSERT_TRUE(writer.ok());
+    Frame colour = small_frame(0, 0, PixelFormat::bgr8);
+    for (int x = 0; x < 16; ++x) {
+        colour.pixels.at(3 * x, 0) = 10;
+        colour.pixels.at(3 * x + 1, 0) = 200;
+        colour.pixels.at(3 * x + 2, 0) = 100;
+    }
+    ASSERT_TRUE(writer->add(colour).ok());
+    ASSERT_TRUE(writer->close().ok());
+    Frame back;
+    ASSERT_TRUE(RecordingReader::open(folder_ / "rec")->read_frame(0, back).ok());
+    EXPECT_EQ(back.format, PixelFormat::grey8);
+    EXPECT_NEAR(back.pixels.at(5, 0), 0.114 * 10 + 0.587 * 200 + 0.299 * 100, 1.0);
+}
+
+TEST_F(RoundTrip, DepthComesBackBitForBit) {
+    Rig rig = small_rig();
+    rig.projector.reset();
+    auto writer = RecordingWriter::create(folder_ / "rec", {rig, std::nullopt, 0.25});
+    ASSERT_TRUE(writer.ok()) << writer.error().message;
+    DepthFrame depth;
+    depth.depth_unit_mm = 0.25;
+    depth.stamp = Stamp::from_us(5);
+    depth.sequence = 3;
+    depth.depth.resize(16, 12);
+    for (int y = 0; y < 12; ++y) {
+        for (int x = 0; x < 16; ++x) {
+            depth.depth.at(x, y) = static_cast<std::uint16_t>(x * 4001 + y * 13);
+        }
+    }
+    ASSERT_TRUE(writer->add(depth).ok());
+    ASSERT_TRUE(writer->close().ok());
+
+    const auto recording = RecordingReader::open(folder_ / "rec");
+    ASSERT_TRUE(recording.ok()) << recording.error().message;
+    EXPECT_EQ(recording->kind(), RecordingKind::depth);
+    EXPECT_EQ(recording->depth_unit_mm(), 0.25);
+    EXPECT_FALSE(frame_source(*recording).ok());
+    auto source = depth_source(*recording);
+    ASSERT_TRUE(source.ok());
+    DepthFrame back;
+    std::string message;
+    ASSERT_EQ((*source)->next(Duration::zero(), back, message), SourceStatus::ok) << message;
+    EXPECT_EQ(back.stamp, depth.stamp);
+    EXPECT_EQ(back.sequence, 3U);
+    EXPECT_EQ(back.depth_unit_mm, 0.25);
+    EXPECT_TRUE(back.metric);
+    expect_same_pixels(back.depth, depth.depth);
+    EXPECT_EQ((*source)->next(Duration::zero(), back, message), SourceStatus::end);
+}
+
+TEST_F(RoundTrip, WriterLeavesNothingUnlessItIsClosed) {
+    const auto patterns = three_step_sequence(Axis::x, {64, 48}, 16.0);
+    {
+        auto writer = RecordingWriter::create(folder_ / "rec", {{}, patterns});
+        ASSERT_TRUE(writer.ok());
+        ASSERT_TRUE(writer->add(small_frame(0, 0)).ok());
+    }
+    EXPECT_TRUE(fs::is_empty(folder_));
+    auto empty = RecordingWriter::create(folder_ / "rec", {{}, patterns});
+    ASSERT_TRUE(empty.ok());
+    EXPECT_FALSE(empty->close().ok());
+    EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(RoundTrip, WriterRefusesWhatWouldNotReadBack) {
+    const auto patterns = three_step_sequence(Axis::x, {1024, 768}, 16.0);
+    fs::create_directory(folder_ / "taken");
+    EXPECT_THAT(RecordingWriter::create(folder_ / "taken", {{}, patterns}).error().message,
+                HasSubstr("exists already"));
+    Rig singular = small_rig();
+    singular.camera.matrix.setZero();
+    EXPECT_FALSE(RecordingWriter::create(folder_ / "rec", {singular, patterns}).ok());
+    auto writer = RecordingWriter::create(folder_ / "rec", {small_rig(), patterns});
+    ASSERT_TRUE(writer.ok());
+    EXPECT_THAT(writer->add(small_frame(0, 3)).error().message, HasSubstr("pattern of frame 0"));
+    ASSERT_TRUE(writer->add(small_frame(5, 0)).ok());
+    EXPECT_THAT(writer->add(small_frame(4, 0)).error().message, HasSubstr("backwards"));
+    Frame large = small_frame(6, 0);
+    large.pixels.resize(17, 12);
+    EXPECT_THAT(writer->add(large).error().message, HasSubstr("17x12"));
+    EXPECT_FALSE(writer->add(DepthFrame{}).ok());
+}
+
+TEST(NullSource, IsOverBeforeItBegins) {
+    EXPECT_EQ(null_frame_source()->next(Duration::zero()).status, SourceStatus::end);
+    DepthFrame depth;
+    std::string message;
+    EXPECT_EQ(null_depth_source(small_rig())->next(Duration::zero(), depth, message),
+              SourceStatus::end);
+    EXPECT_EQ(null_depth_source(small_rig())->rig().camera.size, (Size{16, 12}));
+}
+
+}  // namespace
+}  // namespace xtrack
