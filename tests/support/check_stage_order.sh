@@ -53,7 +53,8 @@ build || { echo "FAILED: an earlier stage must be allowed"; cat "$tree/log"; exi
 refused core/decode/decode.cpp '#include "core/depth/depth.hpp"' \
     'core/decode/decode.cpp:1: error: stage core/decode includes "core/depth/depth.hpp" of the later stage core/depth'
 refused core/decode/decode.hpp '#  include "core/depth/depth.hpp"' 'of the later stage core/depth'
-refused core/depth/depth.cpp '#include <xtrack/hand.hpp>' 'of the later stage gestures/track'
+refused core/depth/depth.cpp '#include <xtrack/hand.hpp>' \
+    'includes "xtrack/hand.hpp" of the later stage gestures/'
 refused core/depth/depth.cpp '#include "gestures/track/track.hpp"' 'of the later stage gestures/track'
 refused core/include/xtrack/stamp.hpp '#include <xtrack/hand.hpp>' \
     'core/include/xtrack/stamp.hpp:1: error: stage core/base includes "xtrack/hand.hpp"'
