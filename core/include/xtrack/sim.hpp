@@ -81,7 +81,7 @@ struct SimCamera {
     double exposure_s = 8e-3;      ///< of each row, at most one frame
     double readout_s = 0.0;        ///< first to last row; 0 = global shutter; at most one frame
     double blur_px = 0.5;          ///< Gaussian sigma of the lens, camera pixels, 0..1
-    double full_well_e = 12000.0;  ///< electrons at grey level 255, 500..200000
+    double full_well_e = 20000.0;  ///< electrons at grey level 255, 500..200000
     double read_noise_e = 8.0;     ///< rms, 0..200
     int motion_samples = 3;        ///< at most so many moments in an exposure, 1..8
 };

@@ -40,7 +40,7 @@ TEST(SimMemory, FramesAndTruthAllocateNothing) {
         SimSettings s = test::small_settings(preset);
         s.script = {{SimAction::swipe_left, SimHand::right, -1.0, 1.0},
                     {SimAction::idle, SimHand::left, -1.0, 1.0}};
-        s.duration_s = 0.5;
+        s.duration_s = 0.4;
         const auto rig = test::make_rig(s);
         (void)rig->next({});
         (void)rig->truth();

@@ -164,7 +164,7 @@ TEST(SimulatedRig, EverythingIsInTheWorkingVolume) {
     for (const std::uint64_t seed : {3U, 4U}) {
         SimSettings s = test::small_settings();
         s.vary(seed);
-        s.camera.frame_hz = 2.0;
+        s.camera.frame_hz = 1.0;
         s.camera.exposure_s = 1e-3;
         const auto rig = test::make_rig(s);
         double nearest = 1e9;
