@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every way a recording can be wrong gives one line that names file, field and mend.
-#include <functional>
+#include <ostream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -153,6 +153,9 @@ struct BadList {
     const char* text;
     const char* said;
 };
+
+// For the names that ctest shows.
+void PrintTo(const BadList& list, std::ostream* out) { *out << list.name; }
 
 class BadFrameList : public BadRecording, public testing::WithParamInterface<BadList> {};
 
