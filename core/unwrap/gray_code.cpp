@@ -13,7 +13,7 @@ std::uint32_t cell_of_gray(std::uint32_t code) noexcept {
     return code;
 }
 
-void gray_code_row(const GrayRow& row) noexcept {
+void gray_code_row_scalar(const GrayRow& row) noexcept {
     constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
     const bool flats = row.white != nullptr && row.black != nullptr;
     const auto cell = static_cast<float>(row.cell_px);
@@ -64,5 +64,11 @@ void gray_code_row(const GrayRow& row) noexcept {
         row.modulation[i] = good ? modulation : 0.0F;
     }
 }
+
+#if XTRACK_WITH_HIGHWAY
+void gray_code_row(const GrayRow& row) noexcept { gray_code_row_highway(row); }
+#else
+void gray_code_row(const GrayRow& row) noexcept { gray_code_row_scalar(row); }
+#endif
 
 }  // namespace xtrack

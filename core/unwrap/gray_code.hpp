@@ -39,6 +39,13 @@ struct GrayRow {
 /// @ownership borrows everything for the call
 void gray_code_row(const GrayRow& row) noexcept;
 
+/// The reference form, plain C++.
+void gray_code_row_scalar(const GrayRow& row) noexcept;
+
+#if XTRACK_WITH_HIGHWAY
+void gray_code_row_highway(const GrayRow& row) noexcept;
+#endif
+
 /// Number of the cell that a reflected binary code word names.
 [[nodiscard]] std::uint32_t cell_of_gray(std::uint32_t code) noexcept;
 

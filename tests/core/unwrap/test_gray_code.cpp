@@ -2,9 +2,12 @@
 #include "core/unwrap/gray_code.hpp"
 
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "tests/core/decode/each_target.hpp"
 
 namespace xtrack {
 namespace {
@@ -105,6 +108,50 @@ TEST(GrayCode, ReadsOffsetsAndInvertedBits) {
     GrayRow shifted = moved.row();
     shifted.offset_px = 16.0;
     EXPECT_FLOAT_EQ(run(shifted).x[100], 95.5F);
+}
+
+TEST(GrayCode, EveryInstructionSetAgreesWithScalarOnRandomImages) {
+    std::mt19937 random(5);
+    for (const bool inverted : {false, true}) {
+        for (const int count : {1, 7, 16, 29, 640}) {
+            std::vector<std::vector<std::uint8_t>> pixels(22);
+            for (auto& image : pixels) {
+                for (int i = 0; i < count; ++i) {
+                    image.push_back(static_cast<std::uint8_t>(random() & 255U));
+                }
+            }
+            GrayRow row;
+            row.count = count;
+            row.bits = 10;
+            for (std::size_t b = 0; b < 10; ++b) {
+                row.image[b] = pixels[b].data();
+                row.inverse[b] = inverted ? pixels[10 + b].data() : nullptr;
+            }
+            row.white = inverted ? nullptr : pixels[20].data();
+            row.black = inverted ? nullptr : pixels[21].data();
+            row.cell_px = 2.0;
+            row.offset_px = 3.0;
+            row.min_modulation = inverted ? 3.0F : 20.0F;
+            row.saturation_limit = 254;
+            row.edge_guard = 0.02F;
+            Result expected{std::vector<float>(static_cast<std::size_t>(count)),
+                            std::vector<float>(static_cast<std::size_t>(count))};
+            GrayRow reference = row;
+            reference.coordinate_px = expected.x.data();
+            reference.modulation = expected.modulation.data();
+            gray_code_row_scalar(reference);
+            test::for_each_target([&] {
+                const Result actual = run(row);
+                for (std::size_t i = 0; i < actual.x.size(); ++i) {
+                    ASSERT_EQ(std::isnan(actual.x[i]), std::isnan(expected.x[i])) << i;
+                    ASSERT_EQ(actual.modulation[i], expected.modulation[i]) << i;
+                    if (!std::isnan(expected.x[i])) {
+                        ASSERT_EQ(actual.x[i], expected.x[i]) << i;
+                    }
+                }
+            });
+        }
+    }
 }
 
 TEST(GrayCode, MasksDarkPixelsAndMixturesOfSurfaces) {
