@@ -18,6 +18,9 @@ int run(int argc, char** argv) {
     int exit_status = 0;
     xtrack::tools::add_run(app, exit_status);
     xtrack::tools::add_replay(app, exit_status);
+    xtrack::tools::add_eval(app, exit_status);
+    xtrack::tools::add_demo(app, exit_status);
+    xtrack::tools::add_decode(app, exit_status);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

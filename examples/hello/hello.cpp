@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <xtrack/session.hpp>
 
 #include <cstdio>
@@ -9,7 +10,8 @@ int main() {
         return 1;
     }
     session->subscribe(xtrack::GestureType::swipe, [](const xtrack::GestureEvent& event) {
-        if (event.phase == xtrack::EventPhase::end) std::puts(to_string(event.direction));
+        if (event.phase == xtrack::EventPhase::end)
+            std::puts(to_string(event.direction));
     });
     return session->run() ? 0 : 1;
 }

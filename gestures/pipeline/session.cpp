@@ -92,7 +92,9 @@ bool Session::Impl::read_due(Duration timeout) {
         queue.wait_until(deadline);
         return false;
     }
-    queue.wait_until(due);
+    if (due > Wall::now()) {
+        queue.wait_until(due);
+    }
     item_waits = false;
     return true;
 }
@@ -182,7 +184,8 @@ void Session::Impl::read_live() {
         const bool last = read.status == SourceStatus::end || read.status == SourceStatus::failed;
         if (read.status == SourceStatus::ok) {
             clock.begin(read.stamp);
-            if (!queue.wait_until(clock.due(read.stamp))) {
+            const auto due = clock.due(read.stamp);
+            if (due > Wall::now() && !queue.wait_until(due)) {
                 return;
             }
         }

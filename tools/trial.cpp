@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/trial.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <utility>
+
+namespace xtrack::tools {
+
+namespace {
+
+constexpr std::uint64_t kMeasureEvery = 20;  // frames; rendering truth costs as much as a frame
+constexpr double kInlier_mm = 15.0;
+constexpr int kErode_px = 2;  // the hand's outermost pixels mix hand and background
+
+GestureLabel label_of(const SimLabel& sim) {
+    GestureLabel label;
+    label.gesture = sim.gesture;
+    label.hand = sim.hand == SimHand::left ? Chirality::left : Chirality::right;
+    label.start = sim.start;
+    label.end = sim.end;
+    label.commit = sim.commit;
+    return label;
+}
+
+/// Truth of the last few frames, since a depth image belongs to the middle of its window.
+class TruthMeter {
+ public:
+    TruthMeter(SimulatedRig& rig, TrialResult& result) : rig_(rig), result_(result) {}
+
+    void see(const PipelineView& view) {
+        if (view.frame != nullptr && (*view.frame)->sequence % kMeasureEvery < kKept) {
+            kept_[next_++ % kKept] = rig_.truth();
+        }
+        if (view.depth == nullptr) {
+            return;
+        }
+        for (const SimTruth& truth : kept_) {
+            if (truth.stamp == view.depth->stamp && truth.sequence > last_measured_) {
+                last_measured_ = truth.sequence;
+                measure_depth(truth, *view.depth);
+                if (view.camera_hands != nullptr) {
+                    measure_palm(truth, *view.camera_hands);
+                }
+            }
+        }
+    }
+
+ private:
+    static constexpr std::size_t kKept = 4;  // frames from the middle of a window to its newest
+
+    static bool inside_hand(const Image<std::uint8_t>& mask, int x, int y) {
+        for (int dy = -kErode_px; dy <= kErode_px; ++dy) {
+            for (int dx = -kErode_px; dx <= kErode_px; ++dx) {
+                if (mask.at(x + dx, y + dy) != static_cast<std::uint8_t>(SimPart::hand)) {
+                    return false;
+                }
+            }
+        }
+        return true;
+    }
+
+    void measure_depth(const SimTruth& truth, const DepthFrame& depth) {
+        double square_sum = 0.0;
+        int within = 0;
+        int off = 0;
+        int missing = 0;
+        for (int y = kErode_px; y < depth.depth.height() - kErode_px; ++y) {
+            for (int x = kErode_px; x < depth.depth.width() - kErode_px; ++x) {
+                if (!inside_hand(truth.mask, x, y)) {
+                    continue;
+                }
+                if (depth.depth.at(x, y) == 0) {
+                    ++missing;
+                    continue;
+                }
+                const double error = depth.depth.at(x, y) * depth.depth_unit_mm -
+                                     truth.depth.at(x, y) * kDepthUnitMm;
+                if (std::abs(error) <= kInlier_mm) {
+                    square_sum += error * error;
+                    ++within;
+                } else {
+                    ++off;
+                }
+            }
+        }
+        constexpr int kEnough = 500;  // pixels; fewer is a hand on its way in or out
+        const int all = within + off + missing;
+        if (all < kEnough || within == 0) {
+            return;
+        }
+        result_.depth_rms_mm.push_back(std::sqrt(square_sum / within));
+        result_.depth_off.push_back(static_cast<double>(off) / all);
+        result_.depth_missing.push_back(static_cast<double>(missing) / all);
+    }
+
+    void measure_palm(const SimTruth& truth, const HandFrame& hands) {
+        for (std::size_t i = 0; i < truth.hand_count; ++i) {
+            const SimHandTruth& real = truth.hands[i];
+            if (!real.palm_visible) {
+                continue;
+            }
+            double nearest_mm = INFINITY;
+            for (const Hand& hand : hands.all()) {
+                nearest_mm = std::min<double>(nearest_mm, (hand.palm_mm - real.palm_mm).norm());
+            }
+            if (std::isfinite(nearest_mm)) {
+                result_.palm_error_mm.push_back(nearest_mm);
+            }
+        }
+    }
+
+    SimulatedRig& rig_;
+    TrialResult& result_;
+    std::array<SimTruth, kKept> kept_;
+    std::size_t next_ = 0;
+    std::uint64_t last_measured_ = 0;
+};
+
+void append(std::vector<double>& to, const std::vector<double>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+}
+
+/// How long after the definition was fulfilled each found gesture was told.
+void measure_delay(TrialResult& result) {
+    for (const JudgedEvent& judged : result.events) {
+        if (judged.verdict != Verdict::correct) {
+            continue;
+        }
+        const std::string name = name_of(judged.event);
+        for (const GestureLabel& label : result.labels) {
+            if (label.gesture == name && label.commit && judged.event.sensor >= label.start &&
+                judged.event.sensor <= label.end + std::chrono::milliseconds(200)) {
+                result.after_commit_ms.push_back(to_seconds(judged.event.sensor - *label.commit) *
+                                                 1e3);
+            }
+        }
+    }
+}
+
+}  // namespace
+
+void TrialResult::add(const TrialResult& other) {
+    score.add(other.score);
+    append(after_commit_ms, other.after_commit_ms);
+    append(depth_rms_mm, other.depth_rms_mm);
+    append(depth_off, other.depth_off);
+    append(depth_missing, other.depth_missing);
+    append(palm_error_mm, other.palm_error_mm);
+    statistics = other.statistics;
+}
+
+Result<TrialResult> run_trial(const TrialOptions& options, const TrialSetup& setup) {
+    auto settings = SimSettings::preset(options.preset);
+    if (!settings) {
+        return settings.error();
+    }
+    if (options.seed != 0) {
+        settings->vary(options.seed);
+    }
+    auto rig = SimulatedRig::create(*settings);
+    if (!rig) {
+        return rig.error();
+    }
+    SimulatedRig& sim = **rig;
+    TrialResult result;
+    for (const SimLabel& label : sim.labels()) {
+        result.labels.push_back(label_of(label));
+    }
+    const Duration length = sim.duration();
+
+    SessionOptions session_options;
+    session_options.pace = options.pace;
+    auto session = Session::create(std::unique_ptr<FrameSource>(std::move(*rig)), session_options);
+    if (!session) {
+        return session.error();
+    }
+    std::vector<GestureEvent> events;
+    session->subscribe([&events](const GestureEvent& event) { events.push_back(event); });
+    TruthMeter meter(sim, result);
+    if (options.measure_depth && options.pace == Pace::replay) {
+        session->subscribe_pipeline([&meter](const PipelineView& view) { meter.see(view); });
+    }
+    if (setup) {
+        setup(*session, sim);
+    }
+    if (const auto ran = session->run(); !ran) {
+        return ran.error();
+    }
+    GestureScorer scorer(session_options.gestures);
+    result.events = scorer.add(events, result.labels, length);
+    result.score = scorer.all();
+    result.statistics = session->statistics();
+    measure_delay(result);
+    return result;
+}
+
+}  // namespace xtrack::tools
