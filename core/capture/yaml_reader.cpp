@@ -21,6 +21,26 @@ Error bad_text(const std::string& name, int line, const std::string& what) {
     return {ErrorCode::malformed, name + " line " + std::to_string(line) + ": " + what};
 }
 
+// Blank up to its end, or a comment.
+bool trimmed_line_is_empty(std::string_view rest) {
+    const std::size_t first = rest.find_first_not_of(" \t\r");
+    return first == std::string_view::npos || rest[first] == '\n' || rest[first] == '#';
+}
+
+// OpenCV 4.6 never comes back from some texts with a second document or with lists at the first
+// column, so what a line may begin with is fixed: a key, a blank, a comment, the end of a bracket,
+// or
+// `---` before all of them.
+bool may_begin_line(std::string_view rest, bool seen_content, int depth) {
+    const char c = rest[0];
+    if (rest.substr(0, 3) == "---") {
+        return !seen_content;
+    }
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '#' || c == '\r' ||
+           (c == ' ' && (seen_content || trimmed_line_is_empty(rest))) ||
+           (depth > 0 && (c == ']' || c == '}'));
+}
+
 }  // namespace
 
 Result<void> check_yaml_text(const std::string& text, const std::string& name) {
@@ -36,7 +56,16 @@ Result<void> check_yaml_text(const std::string& text, const std::string& name) {
     std::size_t column = 0;
     std::size_t indent = 0;
     bool indenting = true;
-    for (const char c : text) {
+    bool seen_content = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (column == 0 && line > 1 && c != '\n') {
+            const std::string_view rest = std::string_view(text).substr(i);
+            if (!may_begin_line(rest, seen_content, depth)) {
+                return bad_text(name, line, "begins with no key; write one document of key: value");
+            }
+            seen_content = seen_content || (c != '-' && !trimmed_line_is_empty(rest));
+        }
         if (c == '\n') {
             ++line;
             column = indent = 0;

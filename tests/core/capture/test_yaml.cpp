@@ -99,6 +99,15 @@ TEST(RigYaml, HostileTextsAreRefused) {
     EXPECT_THAT(rig_message(kHead + std::string(2U << 20U, ' ')), HasSubstr("bytes long"));
 }
 
+// Texts on which OpenCV's parser never ends.
+TEST(RigYaml, OnlyOneDocumentIsTaken) {
+    EXPECT_THAT(rig_message("%YAML:1.0\n   - { kind: flat }\n0\n---\naxis: y\n"),
+                HasSubstr("line 2: begins with no key"));
+    EXPECT_THAT(rig_message(kHead + std::string("a: 1\n---\n- 1\n")), HasSubstr("line 4"));
+    EXPECT_THAT(rig_message(kHead + std::string("a: 1\n...\n- 1\n")), HasSubstr("line 4"));
+    EXPECT_THAT(rig_message(kHead + std::string("a:\n- 1\n")), HasSubstr("line 4"));
+}
+
 TEST(PatternYaml, WhatIsWrittenReadsBack) {
     for (auto s : {dual_sequence(Axis::y, {1024, 768}, 320.0, 32.0),
                    gray_code_sequence(Axis::x, {1824, 1140}, 2.0),
