@@ -33,7 +33,6 @@ constexpr Range kPinchOpenS{0.25, 0.40};
 constexpr Range kEnterS{1.3, 1.7};
 constexpr Range kBetweenGesturesS{0.35, 0.80};
 constexpr double kStrokeTiltRad = 0.09;  // a swipe is not level: up to 5 degrees
-constexpr double kStrokeArcMm = 10.0;    // nor straight: it bends about the elbow
 
 // The definitions that `commit` follows.
 constexpr double kSwipeCandidateMmps = 200.0;
