@@ -78,7 +78,7 @@ struct Session::Impl {
 };
 
 bool Session::Impl::read_due(Duration timeout) {
-    const auto deadline = Wall::now() + timeout;
+    const auto asked = Wall::now();
     if (!item_waits) {
         input.read(pace == Pace::own_pace ? Duration::zero() : timeout, item);
         if (item.status != SourceStatus::ok) {
@@ -88,6 +88,7 @@ bool Session::Impl::read_due(Duration timeout) {
         item_waits = true;
     }
     const auto due = clock.due(item.stamp);
+    const auto deadline = std::max(asked + timeout, Wall::now());
     if (due > deadline) {
         queue.wait_until(deadline);
         return false;
