@@ -123,7 +123,11 @@ void Grid::close_pinholes() {
     for (int y = 0; y < inner_height; ++y) {
         const int begin = index(0, y);
         for (int i = begin; i < begin + inner_width; ++i) {
-            if (scratch_[static_cast<std::size_t>(i)] > 0.0F) {
+            const float* here = scratch_.data() + i;
+            // A pinhole has skin on two of its four sides at least; most empty pixels have none.
+            const int sides = (here[-1] > 0.0F ? 1 : 0) + (here[1] > 0.0F ? 1 : 0) +
+                              (here[-width] > 0.0F ? 1 : 0) + (here[width] > 0.0F ? 1 : 0);
+            if (here[0] > 0.0F || sides < 2) {
                 continue;
             }
             float nearest = 1e9F;

@@ -13,9 +13,9 @@ namespace {
 
 // Proportions of a hand in palm radii, from anthropometry (hand length 190 mm, breadth 85 mm, so a
 // palm radius of 42 mm): the middle fingertip is 2.9 radii from the palm's centre.
-constexpr float kReachRadii = 3.3F;
+constexpr float kReachRadii = 3.7F;
 constexpr float kReachFloorMm = 105.0F;
-constexpr float kReachCeilingMm = 165.0F;
+constexpr float kReachCeilingMm = 175.0F;
 /// A palm's centre is at most this far from the tip of its hand, mm.
 constexpr float kTipToPalmMm = 135.0F;
 /// And a candidate this far loses half its weight: a forearm is as thick as a fist.
