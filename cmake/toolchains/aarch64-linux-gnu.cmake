@@ -6,5 +6,7 @@ set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
 set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)
 find_program(XTRACK_QEMU qemu-aarch64)
 if(XTRACK_QEMU)
-  set(CMAKE_CROSSCOMPILING_EMULATOR ${XTRACK_QEMU} -L /usr/aarch64-linux-gnu)
+  # The C library of libc6:arm64, not the cross compiler's own older copy, whose thread creation
+  # hangs under qemu.
+  set(CMAKE_CROSSCOMPILING_EMULATOR ${XTRACK_QEMU} -L /)
 endif()
