@@ -110,7 +110,7 @@ void Segmenter::choose(std::span<const PalmPrior> priors) {
             free &= c.part != part_of_region[static_cast<std::size_t>(k)];
             free &= c.prior >= 0 || (d.z() < kSecondHandBehindMm && c.score >= kScoreSecond);
         }
-        free &= !hidden_behind(c);
+        free &= c.prior >= 0 || !hidden_behind(c);
         if (!free) {
             continue;
         }
@@ -177,14 +177,11 @@ void Segmenter::paint(const PalmCandidate& c, HandRegion& region) {
 }
 
 bool Segmenter::hidden_behind(const PalmCandidate& c) const {
-    for (const HandRegion& hand : regions()) {
-        const Vec3f d = c.centre_mm - hand.palm_mm;
-        if (d.z() > kArmBehindMm &&
-            std::hypot(d.x(), d.y()) < kArmBesideRadii * hand.palm_radius_mm) {
-            return true;
-        }
-    }
-    return false;
+    return std::any_of(candidates_.begin(), candidates_.end(), [&](const PalmCandidate& front) {
+        const Vec3f d = c.centre_mm - front.centre_mm;
+        return front.part != c.part && d.z() > kArmBehindMm &&
+               std::hypot(d.x(), d.y()) < kArmBesideRadii * front.radius_mm;
+    });
 }
 
 void Segmenter::centre_palm(HandRegion& region) {
