@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whole recordings through the whole pipeline: images in, events out.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <xtrack/labels.hpp>
+#include <xtrack/session.hpp>
+
+namespace xtrack {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Replay {
+    std::vector<GestureEvent> gestures;  ///< ends, without hands
+    std::string json;                    ///< everything
+    std::string error;
+};
+
+Replay replay(const fs::path& folder) {
+    Replay result;
+    auto session = Session::open(folder.string());
+    if (!session) {
+        result.error = session.error().message;
+        return result;
+    }
+    session->subscribe([&](const GestureEvent& event) {
+        result.json += to_json(event) + "\n";
+        if (event.type != GestureType::hand && event.phase == EventPhase::end) {
+            result.gestures.push_back(event);
+        }
+    });
+    if (const auto ran = session->run(); !ran) {
+        result.error = ran.error().message;
+    }
+    return result;
+}
+
+/// One gesture is labelled: it must come within its label (and the 200 ms that scoring allows), and
+/// nothing else may.
+void expect_only_the_label(const fs::path& folder) {
+    const auto labels = read_labels(folder / "labels.csv");
+    ASSERT_TRUE(labels) << labels.error().message;
+    ASSERT_EQ(labels->size(), 1U);
+    const GestureLabel& label = labels->front();
+    const Replay got = replay(folder);
+    ASSERT_EQ(got.error, "");
+    ASSERT_EQ(got.gestures.size(), 1U) << got.json;
+    const GestureEvent& event = got.gestures.front();
+    EXPECT_EQ(name_of(event), label.gesture);
+    EXPECT_GE(event.sensor, label.start);
+    EXPECT_LE(event.sensor, label.end + std::chrono::milliseconds(200));
+    if (label.hand != Chirality::unknown) {
+        EXPECT_EQ(event.hand, label.hand);
+    }
+}
+
+TEST(Recordings, TheSimulatedSwipeIsFoundAndNothingElse) {
+    expect_only_the_label(fs::path(XTRACK_TEST_DATA) / "sim-swipe");
+}
+
+TEST(Recordings, ReplayIsBitExact) {
+    const fs::path folder = fs::path(XTRACK_TEST_DATA) / "sim-swipe";
+    const Replay first = replay(folder);
+    const Replay second = replay(folder);
+    ASSERT_EQ(first.error, "");
+    EXPECT_FALSE(first.json.empty());
+    EXPECT_EQ(first.json, second.json);
+}
+
+TEST(Recordings, AFolderThatIsNotThereIsNamed) {
+    const Replay got = replay("no/such/recording");
+    EXPECT_NE(got.error.find("no/such/recording"), std::string::npos);
+    EXPECT_EQ(got.error.find('\n'), std::string::npos);
+}
+
+TEST(Recordings, UnknownPresetsOfTheSimulatorNameTheKnownOnes) {
+    const Replay got = replay("sim:nonsense");
+    EXPECT_NE(got.error.find("ideal-60"), std::string::npos);
+}
+
+/// Recordings of others, not part of the project.
+class SharedRecordings : public testing::TestWithParam<const char*> {};
+
+TEST_P(SharedRecordings, TheLabelledGestureIsFoundAndNothingElse) {
+    const fs::path folder = fs::path(XTRACK_SHARED_DATA) / GetParam();
+    if (!fs::exists(folder)) {
+        GTEST_SKIP() << folder << " is not there: recordings that are not part of the project";
+    }
+    expect_only_the_label(folder);
+}
+
+INSTANTIATE_TEST_SUITE_P(Rendered, SharedRecordings,
+                         testing::Values("rendered/swipe-left-dual-60",
+                                         "rendered/grey-swipe-left-60"));
+
+}  // namespace
+}  // namespace xtrack
