@@ -5,6 +5,7 @@ option(XTRACK_WITH_HIGHWAY "SIMD kernels with run-time dispatch; off: scalar ker
 option(XTRACK_WITH_TOOLS "The xtrack command" ${XTRACK_WITH_OPENCV})
 option(XTRACK_WITH_TESTS "Unit and functional tests" ${PROJECT_IS_TOP_LEVEL})
 option(XTRACK_WITH_BENCHMARKS "Google Benchmark programs" OFF)
+option(XTRACK_LIBFUZZER "The parsers' fuzz entry as a libFuzzer program (clang++ only)" OFF)
 option(XTRACK_DEVELOPER "Warnings are errors" OFF)
 option(BUILD_SHARED_LIBS "Shared libraries instead of static ones" OFF)
 set(XTRACK_SANITIZE "" CACHE STRING "Sanitizers to build everything with, e.g. address;undefined")
