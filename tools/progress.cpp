@@ -18,20 +18,20 @@ constexpr std::chrono::milliseconds kQuiet{1000};
 constexpr std::chrono::milliseconds kRedraw{100};
 constexpr std::size_t kBarLength = 30;
 
-bool stderr_is_terminal() {
+}  // namespace
+
+bool is_terminal(std::FILE* stream) {
 #ifdef _WIN32
-    return _isatty(_fileno(stderr)) != 0;
+    return _isatty(_fileno(stream)) != 0;
 #else
-    return isatty(STDERR_FILENO) != 0;
+    return isatty(fileno(stream)) != 0;
 #endif
 }
-
-}  // namespace
 
 Progress::Progress(std::string what, std::size_t steps)
     : what_(std::move(what)),
       steps_(steps),
-      terminal_(stderr_is_terminal()),
+      terminal_(is_terminal(stderr)),
       begin_(Clock::now()),
       last_(begin_) {}
 

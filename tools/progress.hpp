@@ -3,9 +3,13 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdio>
 #include <string>
 
 namespace xtrack::tools {
+
+/// Whether a person looks at what is written there.
+[[nodiscard]] bool is_terminal(std::FILE* stream);
 
 /// A bar on stderr, shown only when stderr is a terminal and the work has taken over a second.
 class Progress {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
+#include <xtrack/recording.hpp>
 
 #include "tools/commands.hpp"
 #include "tools/stream.hpp"
@@ -24,7 +25,13 @@ void add_replay(CLI::App& app, int& exit_status) {
             return;
         }
         auto session = Session::open(*folder, options);
-        exit_status = session ? play(*session, *stream, options.pace) : fail(session.error());
+        if (!session) {
+            exit_status = fail(session.error());
+            return;
+        }
+        const auto recording = RecordingReader::open(*folder);
+        const std::size_t items = recording ? recording->entries().size() : 0;
+        exit_status = play(*session, *stream, options.pace, items);
     });
 }
 

@@ -5,13 +5,15 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
-#include <map>
+#include <optional>
 #include <sstream>
 #include <thread>
 #include <utility>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
+
+#include "tools/progress.hpp"
 
 namespace xtrack::tools {
 
@@ -29,6 +31,13 @@ std::string known_gestures() {
         names += names.empty() ? name : std::string(", ") + name;
     }
     return names;
+}
+
+EventFormat format_of(const std::string& name) {
+    if (name == "jsonl") {
+        return EventFormat::jsonl;
+    }
+    return name == "text" ? EventFormat::text : EventFormat::none;
 }
 
 volatile std::sig_atomic_t signal_received = 0;
@@ -66,18 +75,20 @@ class StopOnSignal {
 }  // namespace
 
 void add_stream_options(CLI::App& command, StreamOptions& options) {
-    static const std::map<std::string, EventFormat> formats = {
-        {"text", EventFormat::text}, {"jsonl", EventFormat::jsonl}, {"none", EventFormat::none}};
-    static const std::map<std::string, EventFormat> hand_formats = {{"jsonl", EventFormat::jsonl},
-                                                                    {"none", EventFormat::none}};
     command.add_option(
         "--gestures", options.gestures,
         "Comma-separated list of what is recognised: " + known_gestures() + " (default: all)");
-    command.add_option("--events", options.events, "How events are printed: text, jsonl or none")
-        ->transform(CLI::CheckedTransformer(formats))
+    command
+        .add_option_function<std::string>(
+            "--events", [&options](const std::string& name) { options.events = format_of(name); },
+            "How events are printed: text, jsonl or none")
+        ->check(CLI::IsMember({"text", "jsonl", "none"}))
         ->default_str("text");
-    command.add_option("--hands", options.hands, "Print every hand of every frame: jsonl or none")
-        ->transform(CLI::CheckedTransformer(hand_formats))
+    command
+        .add_option_function<std::string>(
+            "--hands", [&options](const std::string& name) { options.hands = format_of(name); },
+            "Print every hand of every frame: jsonl or none")
+        ->check(CLI::IsMember({"jsonl", "none"}))
         ->default_str("none");
     command.add_flag("--stats", options.statistics,
                      "At the end, print the time of every stage on stderr");
@@ -109,7 +120,7 @@ Result<void> choose_gestures(const std::string& list, GestureSettings& settings)
     return {};
 }
 
-int play(Session& session, const StreamOptions& options, Pace pace) {
+int play(Session& session, const StreamOptions& options, Pace pace, std::size_t items) {
     const EventFormat format =
         options.json && options.events == EventFormat::text ? EventFormat::jsonl : options.events;
     session.subscribe(
@@ -126,8 +137,15 @@ int play(Session& session, const StreamOptions& options, Pace pace) {
             }
         });
     }
+    // A bar between lines of events on the same screen would help nobody.
+    std::optional<Progress> progress;
+    if (items > 0 && !is_terminal(stdout)) {
+        progress.emplace("replay", items);
+        session.subscribe_pipeline([&progress](const PipelineView&) { progress->step(); });
+    }
     const StopOnSignal guard(session);
     const Result<void> result = session.run();
+    progress.reset();
     std::fflush(stdout);
     if (options.statistics) {
         const SessionStatistics statistics = session.statistics();
