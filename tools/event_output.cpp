@@ -14,10 +14,13 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Tenths of a millimetre and hundredths of a unit value are finer than any measurement behind them.
-double rounded(float value, double step) { return std::round(value / step) * step; }
+// Dividing by a power of ten, not multiplying by 0.1, gives the double that prints short.
+double rounded(float value, double per_unit) {
+    return std::round(static_cast<double>(value) * per_unit) / per_unit;
+}
 
-Json vector_json(const Vec3f& v, double step) {
-    return {rounded(v.x(), step), rounded(v.y(), step), rounded(v.z(), step)};
+Json vector_json(const Vec3f& v, double per_unit) {
+    return {rounded(v.x(), per_unit), rounded(v.y(), per_unit), rounded(v.z(), per_unit)};
 }
 
 Json time_json(const TimeStatistics& t) {
@@ -71,21 +74,21 @@ void print_event(std::FILE* out, EventFormat format, const GestureEvent& event, 
 std::string to_json(const HandFrame& hands, const Hand& hand) {
     Json tips = Json::array();
     for (const TrackedPoint& tip : hand.fingertips) {
-        tips.push_back(tip.valid ? vector_json(tip.position_mm, 0.1) : Json(nullptr));
+        tips.push_back(tip.valid ? vector_json(tip.position_mm, 10.0) : Json(nullptr));
     }
     const Json json = {
         {"type", "hand_pose"},
         {"t_us", hands.stamp.us()},
         {"hand_id", hand.id},
         {"hand", to_string(hand.chirality)},
-        {"palm_mm", vector_json(hand.palm_mm, 0.1)},
-        {"normal", vector_json(hand.palm_normal, 0.001)},
+        {"palm_mm", vector_json(hand.palm_mm, 10.0)},
+        {"normal", vector_json(hand.palm_normal, 1000.0)},
         {"tips_mm", tips},
         {"extended", hand.extended_fingers >= 0 ? Json(hand.extended_fingers) : Json(nullptr)},
-        {"aperture_mm", hand.pinch_aperture_mm >= 0.0F ? Json(rounded(hand.pinch_aperture_mm, 0.1))
+        {"aperture_mm", hand.pinch_aperture_mm >= 0.0F ? Json(rounded(hand.pinch_aperture_mm, 10.0))
                                                        : Json(nullptr)},
-        {"grab", rounded(hand.grab_value, 0.01)},
-        {"confidence", rounded(hand.confidence, 0.01)},
+        {"grab", rounded(hand.grab_value, 100.0)},
+        {"confidence", rounded(hand.confidence, 100.0)},
     };
     return json.dump();
 }
