@@ -10,11 +10,21 @@
 
 namespace {
 
+// One line that says what was wrong, as for every other mistake. CLI11 notices what is missing
+// before what is unknown, though the unknown word is mostly the reason.
+std::string usage_message(const CLI::App* app, const CLI::Error& error) {
+    const auto unknown = app->remaining(true);
+    const std::string what =
+        unknown.empty() ? error.what() : fmt::format("'{}' is not known", unknown.front());
+    return fmt::format("xtrack: {}; --help lists what is\n", what);
+}
+
 int run(int argc, char** argv) {
     CLI::App app("xTrack: depth from projected fringes, hands from depth, gestures from hands",
                  "xtrack");
     app.set_version_flag("--version", XTRACK_VERSION);
     app.require_subcommand(1);
+    app.failure_message(usage_message);
     int exit_status = 0;
     xtrack::tools::add_run(app, exit_status);
     xtrack::tools::add_replay(app, exit_status);

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <csignal>
+
+#include <gmock/gmock.h>
+
+#include "tests/tools/command.hpp"
+
+namespace xtrack::test {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string kSwipe = XTRACK_TEST_DATA "/sim-swipe";
+
+TEST(Replay, FindsTheSwipe) {
+    const Outcome outcome = xtrack_command({"replay", kSwipe});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_THAT(outcome.out, HasSubstr("swipe_left"));
+}
+
+TEST(Replay, TwiceIsTheSameToTheByte) {
+    const std::vector<std::string> arguments = {"replay", kSwipe, "--json", "--hands", "jsonl"};
+    const Outcome first = xtrack_command(arguments);
+    const Outcome second = xtrack_command(arguments);
+    EXPECT_EQ(first.status, 0);
+    EXPECT_THAT(first.out, HasSubstr("swipe"));
+    EXPECT_EQ(first.out, second.out);
+}
+
+TEST(Replay, OfOtherGesturesSaysNothingOfTheSwipe) {
+    const Outcome outcome = xtrack_command({"replay", kSwipe, "--gestures", "pinch,push"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_THAT(outcome.out, HasSubstr("hand begin"));
+    EXPECT_THAT(outcome.out, Not(HasSubstr("swipe")));
+}
+
+TEST(Replay, StatisticsGoToStderr) {
+    const Outcome outcome = xtrack_command({"replay", kSwipe, "--events", "none", "--stats"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_THAT(outcome.err, HasSubstr("frames"));
+}
+
+// What was begun is ended, what is known is printed, and the status is that of a run that ended.
+TEST(Run, EndsInOrderOnInterrupt) {
+    const Outcome outcome =
+        interrupted_command({"run", "sim", "--json", "--stats"}, 1, std::chrono::seconds(20));
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_THAT(outcome.out, HasSubstr("\"begin\""));
+    EXPECT_EQ(outcome.out.back(), '\n');
+    EXPECT_THAT(outcome.err, HasSubstr("frames"));
+}
+
+}  // namespace
+}  // namespace xtrack::test
