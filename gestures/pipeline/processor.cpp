@@ -131,6 +131,7 @@ Result<Processor::Outcome> Processor::process(const InputItem& item) {
     const auto begin = Wall::now();
     if (view.interaction_hands != nullptr) {
         lag_ = item.stamp - interaction_hands_.stamp;
+        pointer_.update(interaction_hands_);
         outcome.events = recogniser_.push(interaction_hands_);
     } else {
         outcome.events = advance(item.stamp);

@@ -10,6 +10,7 @@
 #include "core/base/time_histogram.hpp"
 #include "gestures/pipeline/input.hpp"
 #include "gestures/track/hand_from_joints.hpp"
+#include "gestures/track/pointer.hpp"
 
 namespace xtrack {
 
@@ -53,6 +54,7 @@ class Processor {
     Rig rig_;
     TrackerSettings tracker_settings_;
     HandFromJoints hand_from_joints_;
+    Pointer pointer_;
     GestureRecogniser recogniser_;
     Mat4d interaction_from_camera_;
     HandFrame interaction_hands_;

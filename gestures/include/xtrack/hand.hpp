@@ -65,6 +65,9 @@ struct Hand {
     float palm_radius_mm = 0.0F;        ///< of that circle; 0 = unknown
     Vec3f palm_normal = Vec3f::Zero();  ///< unit, out of the palm's seen side; 0 = unknown
     Vec3f palm_velocity_mmps = Vec3f::Zero();
+    /// The palm through a 1-euro filter: calm at rest, little lag in motion. For cursors; set by
+    /// the Session, in the interaction frame alone.
+    Vec3f pointer_mm = Vec3f::Zero();
 
     /// Distal extremes, thumb to little. Which finger is which is a guess where a finger hides.
     std::array<TrackedPoint, kFingerCount> fingertips{};
