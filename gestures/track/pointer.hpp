@@ -19,11 +19,11 @@ class Pointer {
     struct Slot {
         int hand_id = 0;  ///< 0: free
         Stamp seen;
-        OneEuroFilter3 filter;
+        OneEuroFilter3 filter{OneEuroSettings{}};
     };
     Slot& slot_of(int hand_id) noexcept;
 
-    std::array<Slot, kMaxHands> slots_{};
+    std::array<Slot, kMaxHands> slots_;
 };
 
 }  // namespace xtrack
