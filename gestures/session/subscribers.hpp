@@ -29,6 +29,8 @@ class Subscribers {
     }
 
     void remove(int id) {
+        // Dies after the lock: what a callback holds may call back here as it is destroyed.
+        std::shared_ptr<const List> before;
         const MutexLock lock(mutex_);
         auto next = std::make_shared<List>();
         for (const auto& entry : *list_) {
@@ -36,7 +38,7 @@ class Subscribers {
                 next->push_back(entry);
             }
         }
-        list_ = std::move(next);
+        before = std::exchange(list_, std::move(next));
     }
 
     void call(Args... args) const {

@@ -66,5 +66,19 @@ TEST(Subscribers, MayChangeInOneThreadWhileAnotherCalls) {
     EXPECT_GE(heard, calls);
 }
 
+TEST(Subscribers, WhatACallbackHoldsMayCallBackAsItDies) {
+    Subscribers<int> subscribers;
+    struct Token {
+        Subscribers<int>& subscribers;
+        ~Token() { subscribers.remove(2); }
+    };
+    int calls = 0;
+    subscribers.add(1, [token = std::make_shared<Token>(Token{subscribers})](int) {});
+    subscribers.add(2, [&](int) { ++calls; });
+    subscribers.remove(1);
+    subscribers.call(0);
+    EXPECT_EQ(calls, 0);
+}
+
 }  // namespace
 }  // namespace xtrack
