@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <exception>
 #include <memory>
 #include <string>
 #include <utility>
@@ -30,7 +31,21 @@ class Input {
     explicit Input(std::unique_ptr<DepthSource> source) : depths_(std::move(source)) {}
     explicit Input(std::unique_ptr<HandSource> source) : hands_(std::move(source)) {}
 
-    void read(Duration timeout, InputItem& item) {
+    /// Sources may be a caller's own: one that throws or breaks its promise has failed.
+    void read(Duration timeout, InputItem& item) noexcept {
+        try {
+            ask(timeout, item);
+        } catch (const std::exception& e) {
+            item.status = SourceStatus::failed;
+            item.message = std::string("the source threw: ") + e.what();
+        } catch (...) {
+            item.status = SourceStatus::failed;
+            item.message = "the source threw something unknown";
+        }
+    }
+
+ private:
+    void ask(Duration timeout, InputItem& item) {
         if (frames_) {
             FrameSource::Item got = frames_->next(timeout);
             item.status = got.status;
@@ -38,6 +53,9 @@ class Input {
             item.frame = std::move(got.frame);
             if (item.frame) {
                 item.stamp = item.frame->stamp;
+            } else if (item.status == SourceStatus::ok) {
+                item.status = SourceStatus::failed;
+                item.message = "the source says ok and gives no frame; say timeout or end instead";
             }
         } else if (depths_) {
             item.status = depths_->next(timeout, item.depth, item.message);
@@ -48,7 +66,6 @@ class Input {
         }
     }
 
- private:
     std::unique_ptr<FrameSource> frames_;
     std::unique_ptr<DepthSource> depths_;
     std::unique_ptr<HandSource> hands_;

@@ -6,6 +6,8 @@
 #include <chrono>
 #include <exception>
 #include <optional>
+#include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -26,6 +28,8 @@ using Wall = StreamClock::Wall;
 
 // Lost hands are noticed by the clock, at 50 Hz when no item comes.
 constexpr Duration kTick = std::chrono::milliseconds(20);
+// Deadlines are now + time-out: "for ever" must not overflow them.
+constexpr Duration kLongestWait = std::chrono::hours(1);
 
 TimeStatistics statistics_of(const TimeHistogram& h) {
     return {h.count(), h.quantile_us(0.5), h.quantile_us(0.99), h.max_us()};
@@ -49,6 +53,8 @@ struct Session::Impl {
     void tick();
     void deliver(std::span<const GestureEvent> events);
     Result<StepStatus> finish(StepStatus how);
+    template <typename Call>
+    auto guarded(Call&& call) noexcept -> decltype(call());
 
     Input input;
     Processor processor;
@@ -57,7 +63,9 @@ struct Session::Impl {
     InputItem item;
     bool item_waits = false;  ///< read, but not due yet
     bool finished = false;    ///< open gestures have ended or were cancelled
+    std::optional<Error> failure;
     Stamp newest;
+    std::optional<Wall::time_point> newest_taken;  ///< when the item with that stamp was taken
     InputQueue queue;
 
     Subscribers<const GestureEvent&> event_callbacks;
@@ -69,6 +77,7 @@ struct Session::Impl {
     std::atomic<bool> stop_requested{false};
     std::atomic<bool> running{false};
     std::thread worker;
+    std::atomic<std::thread::id> worker_id;
     Result<void> worker_result;
 
     mutable Mutex statistics_mutex;
@@ -81,6 +90,10 @@ bool Session::Impl::read_due(Duration timeout) {
     const auto asked = Wall::now();
     if (!item_waits) {
         input.read(pace == Pace::own_pace ? Duration::zero() : timeout, item);
+        if (item.status == SourceStatus::lost) {
+            queue.wait_until(asked + timeout);  // sources say so at once: asking again would spin
+            return false;
+        }
         if (item.status != SourceStatus::ok) {
             return item.status != SourceStatus::timeout;
         }
@@ -93,8 +106,8 @@ bool Session::Impl::read_due(Duration timeout) {
         queue.wait_until(deadline);
         return false;
     }
-    if (due > Wall::now()) {
-        queue.wait_until(due);
+    if (due > Wall::now() && !queue.wait_until(due)) {
+        return false;
     }
     item_waits = false;
     return true;
@@ -117,7 +130,13 @@ void Session::Impl::deliver(std::span<const GestureEvent> events) {
     }
 }
 
-void Session::Impl::tick() { deliver(processor.advance(clock.now(newest))); }
+void Session::Impl::tick() {
+    // What counts is how long ago the newest item came, not how old its stamp is: a source that
+    // delivers 150 ms late has not lost the hand. In a replay no time passes between items.
+    if (newest_taken && pace != Pace::replay) {
+        deliver(processor.advance(newest + (Wall::now() - *newest_taken)));
+    }
+}
 
 Result<StepStatus> Session::Impl::finish(StepStatus how) {
     if (!finished) {
@@ -132,7 +151,7 @@ Result<StepStatus> Session::Impl::take() {
     switch (item.status) {
         case SourceStatus::ok: break;
         case SourceStatus::timeout:
-        case SourceStatus::lost: tick(); return StepStatus::waiting;
+        case SourceStatus::lost: return StepStatus::waiting;
         case SourceStatus::end: return finish(StepStatus::end);
         case SourceStatus::failed:
             (void)finish(StepStatus::stopped);
@@ -145,6 +164,7 @@ Result<StepStatus> Session::Impl::take() {
         return outcome.error();
     }
     newest = item.stamp;
+    newest_taken = begin;
     deliver(outcome->events);
     if (outcome->view.interaction_hands != nullptr) {
         hands_callbacks.call(*outcome->view.interaction_hands);
@@ -168,7 +188,10 @@ Result<StepStatus> Session::Impl::step(Duration timeout) {
     if (finished) {
         return StepStatus::end;
     }
-    if (!read_due(timeout)) {
+    if (!read_due(std::clamp(timeout, Duration::zero(), kLongestWait))) {
+        if (stop_requested) {
+            return finish(StepStatus::stopped);
+        }
         tick();
         return StepStatus::waiting;
     }
@@ -180,6 +203,10 @@ void Session::Impl::read_live() {
     while (!queue.closed()) {
         input.read(kTick, read);
         if (read.status == SourceStatus::timeout) {
+            continue;
+        }
+        if (read.status == SourceStatus::lost) {
+            (void)queue.wait_until(Wall::now() + kTick);
             continue;
         }
         const bool last = read.status == SourceStatus::end || read.status == SourceStatus::failed;
@@ -198,6 +225,10 @@ void Session::Impl::read_live() {
 }
 
 Result<void> Session::Impl::run_live() {
+    if (item_waits) {  // step() had read it already
+        queue.push(item);
+        item_waits = false;
+    }
     std::thread reader([this] { read_live(); });
     Result<void> result;
     try {
@@ -230,6 +261,9 @@ Result<void> Session::Impl::run_live() {
 }
 
 Result<void> Session::Impl::run() {
+    if (finished) {
+        return {};
+    }
     if (pace != Pace::replay) {
         return run_live();
     }
@@ -246,19 +280,29 @@ Result<void> Session::Impl::run() {
 
 // --- The public face -----------------------------------------------------------------------------
 
-namespace {
-
-/// Callbacks are the caller's code: what they throw must not cross our threads and API.
+/// Callbacks are the caller's code: what they throw must not cross our threads and API. A session
+/// that has failed stays failed: half an item may have been delivered.
 template <typename Call>
-auto guarded(Call&& call) noexcept -> decltype(call()) {
-    try {
-        return call();
-    } catch (const std::exception& e) {
-        return Error{ErrorCode::invalid_argument, std::string("a callback threw: ") + e.what()};
-    } catch (...) {
-        return Error{ErrorCode::invalid_argument, "a callback threw something unknown"};
+auto Session::Impl::guarded(Call&& call) noexcept -> decltype(call()) {
+    if (failure) {
+        return *failure;
     }
+    try {
+        auto result = call();
+        if (!result) {
+            failure = result.error();
+        }
+        return result;
+    } catch (const std::exception& e) {
+        failure = Error{ErrorCode::invalid_argument, std::string("a callback threw: ") + e.what()};
+    } catch (...) {
+        failure = Error{ErrorCode::invalid_argument, "a callback threw something unknown"};
+    }
+    finished = true;
+    return *failure;
 }
+
+namespace {
 
 /// Only one of run(), step() and the session's own thread at a time.
 class Turn {
@@ -289,7 +333,10 @@ Session::Session(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Session::Session(Session&&) noexcept = default;
 
 Session& Session::operator=(Session&& other) noexcept {
-    std::swap(impl_, other.impl_);
+    if (this != &other) {
+        const Session before(std::move(*this));  // stops and joins what ran here
+        impl_ = std::move(other.impl_);
+    }
     return *this;
 }
 
@@ -373,25 +420,39 @@ Result<void> Session::run() {
     if (!turn.mine()) {
         return already_running();
     }
-    return guarded([this] { return impl_->run(); });
+    return impl_->guarded([this] { return impl_->run(); });
 }
 
 Result<void> Session::start() {
-    if (impl_->worker.joinable() || impl_->running.exchange(true)) {
+    if (impl_->running.exchange(true)) {
         return already_running();
+    }
+    if (impl_->worker.joinable()) {
+        impl_->worker.join();  // a run that is over and that nobody waited for
     }
     // The thread keeps the Impl and not the Session, which may be moved meanwhile.
     Impl* impl = impl_.get();
-    impl->worker = std::thread([impl] {
-        impl->worker_result = guarded([impl] { return impl->run(); });
+    try {
+        impl->worker = std::thread([impl] {
+            impl->worker_id = std::this_thread::get_id();
+            impl->worker_result = impl->guarded([impl] { return impl->run(); });
+            impl->running = false;
+        });
+    } catch (const std::system_error& e) {
         impl->running = false;
-    });
+        return Error{ErrorCode::io, std::string("the system gives no thread: ") + e.what()};
+    }
     return {};
 }
 
 Result<void> Session::wait() {
+    if (impl_->worker_id.load() == std::this_thread::get_id()) {
+        return Error{ErrorCode::invalid_argument,
+                     "a callback cannot wait() for the thread that it runs in; use stop()"};
+    }
     if (impl_->worker.joinable()) {
         impl_->worker.join();
+        impl_->worker_id = std::thread::id{};  // the system may give the number to another thread
     }
     return impl_->worker_result;
 }
@@ -401,7 +462,7 @@ Result<StepStatus> Session::step(Duration timeout) {
     if (!turn.mine()) {
         return already_running();
     }
-    return guarded([this, timeout] { return impl_->step(timeout); });
+    return impl_->guarded([this, timeout] { return impl_->step(timeout); });
 }
 
 void Session::stop() noexcept {

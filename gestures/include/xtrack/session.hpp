@@ -66,15 +66,15 @@ struct TimeStatistics {
 struct SessionStatistics {
     std::uint64_t items = 0;     ///< frames, depth images or hand frames processed
     std::uint64_t dropped = 0;   ///< arrived faster than they could be processed (never in replay)
-    std::uint64_t rejected = 0;  ///< refused by the decoder: damaged, unknown pattern, late
+    std::uint64_t rejected = 0;  ///< of these: damaged, of an unknown pattern, or of another size
     std::uint64_t depth_frames = 0;
     std::uint64_t events = 0;
     std::uint64_t events_dropped = 0;  ///< lost by a reader that polled too slowly
     TimeStatistics decode;             ///< frame to depth
     TimeStatistics track;              ///< depth to hands
-    TimeStatistics recognise;          ///< hands to events, callbacks included
-    TimeStatistics whole;
-    TimeStatistics latency;  ///< event: sensor to emit; empty in replay
+    TimeStatistics recognise;          ///< hands to events
+    TimeStatistics whole;              ///< an item's way through all of it, callbacks included
+    TimeStatistics latency;            ///< event: sensor to emit; empty in replay
 };
 
 /// From a source to gesture events. Three ways to run it:
@@ -85,7 +85,11 @@ struct SessionStatistics {
 ///
 /// Callbacks run in the thread that calls run() or step(), or in the session's own thread after
 /// start(), one at a time. They may subscribe, unsubscribe, poll and stop(); they must not destroy
-/// the session. A callback that throws ends the session with an Error.
+/// or move the session. A callback that throws ends the session with an Error.
+///
+/// A session plays its source once. After its end run() and start() do nothing, after stop() they
+/// return at once, and once it has failed they and step() give the same Error again. A session that
+/// was moved from may be destroyed or assigned to, nothing else.
 /// @since 0.1
 class Session {
  public:
@@ -107,7 +111,8 @@ class Session {
 
     Session(Session&&) noexcept;
     Session& operator=(Session&&) noexcept;
-    /// Stops and joins. @thread not from a callback
+    /// Stops and joins the thread of start(); callbacks may still run until it returns.
+    /// @pre no run() or step() is under way. @thread not from a callback
     ~Session();
 
     /// Calls back for every event of one type. @return a handle for unsubscribe(). @thread any
@@ -118,6 +123,8 @@ class Session {
     int subscribe_hands(HandsCallback callback);
     /// Calls back after every processed item with all that it became. @thread any
     int subscribe_pipeline(PipelineCallback callback);
+    /// An event whose delivery has begun in another thread may still reach the callback after this;
+    /// what it uses must live until then, at the latest until wait() or the destructor returns.
     /// @thread any, a callback included
     void unsubscribe(int handle);
 
@@ -128,7 +135,8 @@ class Session {
     Result<void> run();
     /// Runs in a thread of the session's own. @return an Error if it runs already
     Result<void> start();
-    /// Waits for the thread of start(). @return how it ended
+    /// Waits for the thread of start(). @return how it ended; an Error in a callback
+    /// @thread one at a time
     Result<void> wait();
     /// Processes at most one item in the calling thread; waits for it up to `timeout` (0: not at
     /// all). Call it at 50 Hz or more: losses are noticed by the clock. @thread one at a time

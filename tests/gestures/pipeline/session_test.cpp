@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
+#include <algorithm>
 #include <chrono>
+#include <functional>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace xtrack {
@@ -221,6 +224,160 @@ TEST(Session, ASourceThatFailsEndsItWithTheSourcesWords) {
     const auto result = session->run();
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().message, "the hand is gone");
+}
+
+TEST(Session, PlaysItsSourceOnce) {
+    for (const Pace pace : {Pace::replay, Pace::own_pace}) {
+        auto session = swiping_session(pace, 3);
+        ASSERT_TRUE(session);
+        ASSERT_TRUE(session->run());
+        EXPECT_EQ(session->statistics().items, 3U);
+        EXPECT_TRUE(session->run());
+        ASSERT_TRUE(session->start());
+        EXPECT_TRUE(session->wait());
+        EXPECT_EQ(session->statistics().items, 3U);
+    }
+}
+
+TEST(Session, StaysFailed) {
+    for (const Pace pace : {Pace::replay, Pace::own_pace}) {
+        auto session = swiping_session(pace, 3);
+        ASSERT_TRUE(session);
+        int calls = 0;
+        session->subscribe_hands([&](const HandFrame&) {
+            ++calls;
+            throw std::runtime_error("no more");
+        });
+        const auto first = session->run();
+        ASSERT_FALSE(first);
+        const auto again = session->run();
+        ASSERT_FALSE(again);
+        EXPECT_EQ(again.error().message, first.error().message);
+        const auto step = session->step();
+        ASSERT_FALSE(step);
+        EXPECT_EQ(step.error().message, first.error().message);
+        ASSERT_TRUE(session->start());
+        EXPECT_FALSE(session->wait());
+        EXPECT_EQ(calls, 1);
+    }
+}
+
+/// A tracker of the caller's whose next() does what the test says.
+class CallersSource final : public HandSource {
+ public:
+    using Next = std::function<SourceStatus(HandFrame&)>;
+    explicit CallersSource(Next next) : next_(std::move(next)) {}
+    SourceStatus next(Duration /*timeout*/, HandFrame& out, std::string& /*message*/) override {
+        return next_(out);
+    }
+
+ private:
+    Next next_;
+};
+
+Result<Session> callers_session(CallersSource::Next next, Pace pace) {
+    SessionOptions options;
+    options.pace = pace;
+    return Session::create(std::unique_ptr<HandSource>(new CallersSource(std::move(next))),
+                           options);
+}
+
+TEST(Session, ASourceThatThrowsHasFailed) {
+    for (const Pace pace : {Pace::replay, Pace::own_pace}) {
+        auto session = callers_session(
+            [](HandFrame&) -> SourceStatus { throw std::runtime_error("out of light"); }, pace);
+        ASSERT_TRUE(session);
+        const auto result = session->run();
+        ASSERT_FALSE(result);
+        EXPECT_EQ(result.error().message, "the source threw: out of light");
+    }
+}
+
+TEST(Session, ALostSourceIsAskedAgainAndNotAllTheTime) {
+    for (const Pace pace : {Pace::replay, Pace::live}) {
+        int asked = 0;
+        auto session = callers_session(
+            [&](HandFrame&) { return ++asked < 5 ? SourceStatus::lost : SourceStatus::end; }, pace);
+        ASSERT_TRUE(session);
+        const auto begin = std::chrono::steady_clock::now();
+        EXPECT_TRUE(session->run());
+        EXPECT_EQ(asked, 5);
+        EXPECT_GE(std::chrono::steady_clock::now() - begin, 4 * 20ms);
+        EXPECT_EQ(session->statistics().dropped, 0U);
+    }
+}
+
+TEST(Session, ImagesThatComeLateLoseNoHand) {
+    constexpr auto kLate = 400ms;  // more than a hand may be unseen before it is gone
+    constexpr int kFrames = 15;
+    SwipingHand hand(kFrames);
+    std::string message;
+    auto session = callers_session(
+        [&](HandFrame& out) {
+            std::this_thread::sleep_for(30ms);  // longer than the 20 ms between looks at the clock
+            const auto status = hand.next(Duration::zero(), out, message);
+            const auto seen = std::chrono::steady_clock::now() - kLate;
+            out.stamp =
+                Stamp{std::chrono::duration_cast<Duration>(seen.time_since_epoch()).count()};
+            return status;
+        },
+        Pace::live);
+    ASSERT_TRUE(session);
+    std::vector<EventPhase> phases;
+    session->subscribe(GestureType::hand,
+                       [&](const GestureEvent& e) { phases.push_back(e.phase); });
+    ASSERT_TRUE(session->run());
+    EXPECT_EQ(phases, (std::vector<EventPhase>{EventPhase::begin, EventPhase::end}));
+}
+
+TEST(Session, AWaitInACallbackIsRefused) {
+    auto session = swiping_session(Pace::replay, 3);
+    ASSERT_TRUE(session);
+    std::string message;
+    session->subscribe_hands([&](const HandFrame&) {
+        const auto waited = session->wait();
+        message = waited ? "no error" : waited.error().message;
+    });
+    ASSERT_TRUE(session->start());
+    ASSERT_TRUE(session->wait());
+    EXPECT_NE(message.find("callback cannot wait()"), std::string::npos) << message;
+}
+
+TEST(Session, AssigningEndsTheSessionThatWasThere) {
+    auto token = std::make_shared<int>(0);
+    const std::weak_ptr<int> alive = token;
+    auto first = callers_session(
+        [token = std::move(token)](HandFrame&) {
+            std::this_thread::sleep_for(1ms);
+            return SourceStatus::timeout;
+        },
+        Pace::live);
+    auto second = swiping_session(Pace::replay, 3);
+    ASSERT_TRUE(first && second);
+    ASSERT_TRUE(first->start());
+    *first = std::move(*second);
+    EXPECT_TRUE(alive.expired());
+    EXPECT_TRUE(first->run());
+    EXPECT_EQ(first->statistics().items, 3U);
+}
+
+TEST(Session, AStepMayWaitForEver) {
+    auto session = swiping_session(Pace::own_pace, 3);
+    ASSERT_TRUE(session);
+    for (int i = 0; i < 3; ++i) {
+        const auto status = session->step(Duration::max());
+        ASSERT_TRUE(status);
+        EXPECT_EQ(*status, StepStatus::processed);
+    }
+}
+
+TEST(Session, WhatAStepHasReadARunStillPlays) {
+    auto session = swiping_session(Pace::own_pace, 3);
+    ASSERT_TRUE(session);
+    ASSERT_TRUE(session->step());
+    ASSERT_TRUE(session->step());  // reads an item that is due 17 ms later
+    ASSERT_TRUE(session->run());
+    EXPECT_EQ(session->statistics().items, 3U);
 }
 
 TEST(Session, UnsubscribedCallbacksAreNotCalled) {
