@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/file.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <fstream>
 #include <random>
@@ -19,8 +20,8 @@ Error io_error(const fs::path& path, const std::string& what) {
     return {ErrorCode::io, path.string() + ": " + what};
 }
 
-// A name nobody else uses, beside the target so that the last rename stays on one file system. The
-// random part is no secret: what creates the file or folder refuses one that is there.
+// A name nobody else uses, beside the target so that the last rename stays on one file system. It
+// cannot be foretold, so that nobody can put a link there first in a folder that others may write.
 fs::path temporary_beside(const fs::path& target) {
     static constexpr char kDigits[] = "0123456789abcdef";
     std::random_device random;
@@ -194,8 +195,14 @@ void NewFolder::discard() noexcept {
 }
 
 bool stays_inside(std::string_view text) noexcept {
-    if (text.empty() || text.find('\0') != std::string_view::npos ||
-        text.find(':') != std::string_view::npos) {  // C:file, file:stream
+    if (text.empty() || text.find(':') != std::string_view::npos) {  // C:file, file:stream
+        return false;
+    }
+    // Names come back in messages, where a control character would speak to the terminal.
+    const auto is_control = [](char c) {
+        return static_cast<unsigned char>(c) < 0x20U || c == 0x7F;
+    };
+    if (std::any_of(text.begin(), text.end(), is_control)) {
         return false;
     }
     while (true) {

@@ -63,7 +63,8 @@ class NewFolder {
     std::filesystem::path temporary_;  // empty once committed or discarded
 };
 
-/// True if `text` names something inside a folder: relative, no root, no drive, no "..", not empty.
+/// True if `text` names something inside a folder: relative, no root, no drive, no "..", no control
+/// character, not empty. It judges the name alone: links on the disk are followed.
 /// `/` and `\` both part names, so that a recording means the same on every system.
 [[nodiscard]] bool stays_inside(std::string_view text) noexcept;
 

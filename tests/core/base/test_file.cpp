@@ -90,8 +90,9 @@ TEST(StaysInside, KnowsEscapes) {
     for (const char* good : {"a.png", "frames/000.png", "a..b/c", ".hidden"}) {
         EXPECT_TRUE(stays_inside(good)) << good;
     }
-    for (const char* bad : {"", "/etc/passwd", "../a", "../../etc/passwd", "a/../../b", "a/..",
-                            "..\\a", "C:\\a", "\\\\host\\a", "a//b", "a:b", "frames/"}) {
+    for (const char* bad :
+         {"", "/etc/passwd", "../a", "../../etc/passwd", "a/../../b", "a/..", "..\\a", "C:\\a",
+          "\\\\host\\a", "a//b", "a:b", "frames/", "a\x1b[2Jb", "a\nb", "a\x7f"}) {
         EXPECT_FALSE(stays_inside(bad)) << bad;
     }
     EXPECT_FALSE(stays_inside(std::string_view("a\0b", 3)));
