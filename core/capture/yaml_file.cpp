@@ -117,12 +117,11 @@ Result<void> read_optional_fields(const YamlMap& map, RigFile& file) {
         rig.working_volume = WorkingVolume{(*ends)[0], (*ends)[1]};
     }
     if (map.has("depth_unit_mm")) {
-        constexpr double kMaxUnit_mm = 1000.0;
         const auto unit = map.number("depth_unit_mm");
         if (!unit) {
             return unit.error();
         }
-        if (!(*unit > 0.0 && *unit <= kMaxUnit_mm)) {
+        if (!(*unit > 0.0 && *unit <= kMaxDepthUnit_mm)) {
             return map.error("depth_unit_mm", "is not over 0 and at most 1000; give mm a step");
         }
         file.depth_unit_mm = *unit;

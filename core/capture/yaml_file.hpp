@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -20,6 +21,7 @@ struct RigFile {
 };
 
 inline constexpr std::size_t kMaxYamlBytes = std::size_t{1} << 20U;
+inline constexpr double kMaxDepthUnit_mm = 1000.0;
 
 /// @return the rig as written, validated
 [[nodiscard]] Result<RigFile> parse_rig(const std::string& text, const std::string& name);

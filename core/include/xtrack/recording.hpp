@@ -119,7 +119,7 @@ class RecordingWriter {
     struct Setup {
         std::optional<Rig> rig;
         std::optional<PatternSequence> patterns;  ///< fringes; absent: depth
-        double depth_unit_mm = kDepthUnitMm;      ///< depth alone
+        double depth_unit_mm = kDepthUnitMm;      ///< depth alone; another unit needs the rig
     };
 
     /// @return an Error: the target exists (it is never overwritten), its parent is missing, or the
@@ -130,7 +130,8 @@ class RecordingWriter {
     RecordingWriter& operator=(RecordingWriter&&) noexcept;
     ~RecordingWriter();
 
-    /// Adds an image of fringes. Stamps must not decrease, sizes must not change.
+    /// Adds an image of fringes. Stamps must not decrease, sizes must not change. The format has no
+    /// place for `status` and the clean rows: read back, a frame is `ok` and all of its rows clean.
     [[nodiscard]] Result<void> add(const Frame& frame);
     /// Adds a depth image, in the unit of the setup.
     [[nodiscard]] Result<void> add(const DepthFrame& depth);

@@ -187,6 +187,12 @@ TEST_F(RoundTrip, WriterRefusesWhatWouldNotReadBack) {
     large.pixels.resize(17, 12);
     EXPECT_THAT(writer->add(large).error().message, HasSubstr("17x12"));
     EXPECT_FALSE(writer->add(DepthFrame{}).ok());
+    // The unit is kept in rig.yaml, and what is kept there must be read back.
+    EXPECT_THAT(RecordingWriter::create(folder_ / "rec", {{}, {}, 1.0}).error().message,
+                HasSubstr("kept in rig.yaml"));
+    EXPECT_THAT(RecordingWriter::create(folder_ / "rec", {small_rig(), {}, 1001.0}).error().message,
+                HasSubstr("at most 1000"));
+    EXPECT_TRUE(RecordingWriter::create(folder_ / "rec", {{}, {}}).ok());
 }
 
 TEST(NullSource, IsOverBeforeItBegins) {
