@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstddef>
 #include <utility>
 
 #include <xtrack/recording.hpp>
@@ -9,15 +11,25 @@ namespace xtrack {
 
 namespace {
 
-// A decoder holds one full cycle of patterns, a pipeline a few frames on the way to it. Beyond this
+// A decoder holds two cycles of six patterns, a pipeline a few frames on the way to it. Beyond this
 // a frame of its own is made: a recording drops nothing.
 constexpr std::size_t kPooledFrames = 16;
+// The pool exists before the first image is read, at the size that rig.yaml or a header claims.
+constexpr std::size_t kPooledBytes = std::size_t{256} << 20U;
+
+std::size_t pooled_frames(Size size) {
+    const std::size_t bytes =
+        static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
+    return std::clamp(kPooledBytes / std::max<std::size_t>(bytes, 1), std::size_t{1},
+                      kPooledFrames);
+}
 
 class RecordedFrames final : public FrameSource {
  public:
     explicit RecordedFrames(RecordingReader recording)
         : recording_(std::move(recording)),
-          pool_(kPooledFrames, recording_.image_size(), PixelFormat::grey8) {}
+          pool_(pooled_frames(recording_.image_size()), recording_.image_size(),
+                PixelFormat::grey8) {}
 
     [[nodiscard]] const Rig& rig() const override { return recording_.rig(); }
     [[nodiscard]] const PatternSequence& patterns() const override { return recording_.patterns(); }
