@@ -28,11 +28,25 @@ bool DepthDecoder::Impl::choose_images(std::size_t sine, int y, Images& images) 
             return true;
         }
     }
-    images.taps = period.newest_taps;
+    // Every frame of a pattern that is held: their mean has less noise, and as each pattern keeps
+    // its weight, harmonics err as in the plain taps.
+    images.taps.count = 0;
     for (std::size_t n = 0; n < period.patterns.size(); ++n) {
-        images.frames[n] = window.clean(period.patterns[n], y);
-        if (images.frames[n] == nullptr) {
+        std::array<const Frame*, FrameWindow::kFramesPerShow> frames{};
+        const int left =
+            kMaxTaps - images.taps.count - static_cast<int>(period.patterns.size() - n);
+        const std::size_t seen = std::min(window.clean_show(period.patterns[n], y, frames),
+                                          static_cast<std::size_t>(1 + std::max(left, 0)));
+        if (seen == 0) {
             return false;
+        }
+        Tap tap = period.newest_taps.taps[n];
+        tap.re /= static_cast<float>(seen);
+        tap.im /= static_cast<float>(seen);
+        for (std::size_t k = 0; k < seen; ++k) {
+            const auto at = static_cast<std::size_t>(images.taps.count++);
+            images.taps.taps[at] = tap;
+            images.frames[at] = frames[k];
         }
     }
     return true;
@@ -61,7 +75,8 @@ void DepthDecoder::Impl::decode_sine_row(std::size_t sine, const Images& images,
         const Tap& tap = images.taps.taps[n];
         begin = std::max(begin, -tap.dx);
         end = std::min(end, size.width - tap.dx);
-        inside = inside && y + tap.dy >= 0 && y + tap.dy < size.height;
+        inside = inside && y + tap.dy >= 0 && y + tap.dy < size.height &&
+                 saw(*images.frames[n], y + tap.dy);
     }
     if (!inside || begin >= end) {
         std::fill_n(out.phase, size.width, kNone);

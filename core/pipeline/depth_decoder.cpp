@@ -112,7 +112,7 @@ DecodeStatus DepthDecoder::Impl::push(const FramePtr& frame) noexcept {
             return {DecodeState::need_more, RejectReason::none};
         }
     }
-    moving_drift_px_per_s = motion && motion->moving() ? drift_px_per_s() : 0.0;
+    moving_depth_mm = motion && motion->moving() ? find_moving_depth_mm() : 0.0;
     const std::span<const int> edges = window.row_edges(size.height);
     for (std::size_t n = 0; n + 1 < edges.size(); ++n) {
         decode_rows(edges[n], edges[n + 1]);

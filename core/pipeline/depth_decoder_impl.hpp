@@ -50,7 +50,8 @@ struct DepthDecoder::Impl {
 
     /// The chosen images once more, moved along with what moves, their taps corrected.
     void follow_images() noexcept;
-    [[nodiscard]] double drift_px_per_s() noexcept;
+    [[nodiscard]] double find_moving_depth_mm() noexcept;
+    [[nodiscard]] double drift_px_since(const Frame& frame) const noexcept;
     void decode_moving_row(int y, const RowOut& out) noexcept;
     void mask_disagreeing(int y, int begin, int end, bool follow, const RowOut& out) noexcept;
 
@@ -70,8 +71,8 @@ struct DepthDecoder::Impl {
     std::vector<Images> still;      // by period, for the rows at hand
     std::vector<Images> following;  // the same, for what moves
     bool can_follow = false;
-    double moving_drift_px_per_s = 0.0;  // projector coordinate of what moves
-    double drift_rad_per_cycle = 0.0;    // of the shortest period, at what moves
+    double moving_depth_mm = 0.0;      // of what moves; 0: unknown
+    double drift_rad_per_cycle = 0.0;  // of the shortest period, at what moves
     std::vector<std::uint16_t> moving_depths;
     // Scratch rows, small enough to stay in the first-level cache.
     Image<float> row_phase, row_modulation, row_coordinate, row_reference, row_ideal, row_rays;

@@ -5,35 +5,29 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <limits>
+
+#include "core/pipeline/motion_pixels.hpp"
 
 namespace xtrack {
 namespace {
 
+using motion::grey_at;
+using motion::inside;
+using motion::kCostCap;
+using motion::saw_cells;
+
 // Fewer moving cells than this share of the image are noise or a flicker, not a hand.
 constexpr double kMinMovingShare = 0.002;
-// A mismatch costs at most this, grey levels: pixels that were covered or uncovered match nowhere
-// and must not drag the estimate.
-constexpr int kCostCap = 40;
 // Following is chosen where its mismatch is below this share of that of standing still.
 constexpr float kFollowAdvantage = 1.0F;
 // Images of a cycle that is over before a hand changes its speed.
 constexpr int kShortCycle = 4;
 // A hand's: 2 m in a second, squared, at 1 px a mm; px / s^2.
 constexpr float kMaxAcceleration_px = 10000.0F;
-// A match that is farther from the one expected must be better by this much a cell, grey levels:
-// fine fringes match themselves a period away.
-constexpr float kExpectedAdvantage = 0.3F;
 // Pixels that are summed of a cell: every other row.
 constexpr unsigned kCellSamples = MotionEstimator::kCellPx * MotionEstimator::kCellPx / 2;
 // One sample in so many pixels each way when costs are summed.
 constexpr int kSampleStepPx = 2;
-
-// Green stands for grey in colour images: differences are all that matters here.
-int grey_at(const Frame& frame, int x, int y) noexcept {
-    const std::uint8_t* row = frame.pixels.row(y);
-    return frame.format == PixelFormat::grey8 ? row[x] : row[3 * x + 1];
-}
 
 // Eight pixels at a time in one register: sums of neighbours in four fields of 16 bits.
 std::uint64_t sums_of_two(const std::uint8_t* eight) noexcept {
@@ -45,10 +39,6 @@ std::uint64_t sums_of_two(const std::uint8_t* eight) noexcept {
 
 std::uint64_t sum_of_four(std::uint64_t fields) noexcept {
     return (fields * 0x0001000100010001U) >> 48U;
-}
-
-bool inside(int x, int y, Size size) noexcept {
-    return x >= 0 && y >= 0 && x < size.width && y < size.height;
 }
 
 }  // namespace
@@ -72,7 +62,7 @@ MotionEstimator::MotionEstimator(Size image, int patterns, const Settings& setti
     follow_cost_.resize(w, h);
     row_disturbed_.resize(static_cast<std::size_t>(h), 0);
     active_cells_.reserve(static_cast<std::size_t>(w) * static_cast<std::size_t>(h));
-    pairs_.reserve(static_cast<std::size_t>(patterns));
+    pairs_.reserve(2 * static_cast<std::size_t>(patterns));
 }
 
 void MotionEstimator::clear() noexcept {
@@ -86,6 +76,7 @@ void MotionEstimator::clear() noexcept {
     std::fill(row_disturbed_.begin(), row_disturbed_.end(), std::uint8_t{0});
     history_count_ = 0;
     moving_ = false;
+    held_ = false;
 }
 
 void MotionEstimator::shrink(const Frame& frame, Image<std::uint8_t>& cells) const noexcept {
@@ -120,111 +111,98 @@ void MotionEstimator::shrink(const Frame& frame, Image<std::uint8_t>& cells) con
     }
 }
 
-int MotionEstimator::mark_moving(const Image<std::uint8_t>& now,
-                                 const Image<std::uint8_t>& before) noexcept {
-    active_cells_.clear();
-    const int threshold = static_cast<int>(std::ceil(settings_.noise_levels));
-    const int lifetime = std::min(2 * patterns_, 255);
+MotionEstimator::Small& MotionEstimator::take_small(const FrameWindow& window,
+                                                    int pattern) noexcept {
+    SmallSlot& slot = small_[static_cast<std::size_t>(pattern)];
+    const auto entries = window.entries(pattern);
+    for (Small& small : slot) {
+        const bool used = std::any_of(
+            entries.begin(), entries.end(),
+            [&](const FrameWindow::Entry& entry) { return entry.frame.get() == small.frame; });
+        if (small.frame == nullptr || !used) {
+            return small;
+        }
+    }
+    return slot.back();
+}
+
+const MotionEstimator::Small* MotionEstimator::find_small(const Frame& frame) const noexcept {
+    for (const Small& small : small_[static_cast<std::size_t>(frame.pattern)]) {
+        if (small.frame == &frame) {
+            return &small;
+        }
+    }
+    return nullptr;
+}
+
+void MotionEstimator::age_cells() noexcept {
     for (int cy = 0; cy < age_.height(); ++cy) {
         for (int cx = 0; cx < age_.width(); ++cx) {
-            const bool moved = std::abs(now.at(cx, cy) - before.at(cx, cy)) >= threshold;
             std::uint8_t& age = age_.at(cx, cy);
-            age = moved ? static_cast<std::uint8_t>(lifetime)
-                        : static_cast<std::uint8_t>(age > 0 ? age - 1 : 0);
-            if (moved) {
+            age = static_cast<std::uint8_t>(age > 0 ? age - 1 : 0);
+        }
+    }
+}
+
+void MotionEstimator::mark_moving(const Small& now, const Small& before, int lifetime) noexcept {
+    active_cells_.clear();
+    const int threshold = static_cast<int>(std::ceil(settings_.noise_levels));
+    for (int cy = 0; cy < age_.height(); ++cy) {
+        if (!saw_cells(*now.frame, cy, size_.height) ||
+            !saw_cells(*before.frame, cy, size_.height)) {
+            continue;
+        }
+        for (int cx = 0; cx < age_.width(); ++cx) {
+            if (std::abs(now.cells.at(cx, cy) - before.cells.at(cx, cy)) >= threshold) {
+                age_.at(cx, cy) = static_cast<std::uint8_t>(lifetime);
                 active_cells_.push_back(
                     {static_cast<std::int16_t>(cx), static_cast<std::int16_t>(cy)});
             }
         }
     }
-    return static_cast<int>(active_cells_.size());
 }
 
-Shift MotionEstimator::search_cells(const Image<std::uint8_t>& now,
-                                    const Image<std::uint8_t>& before) const noexcept {
-    const int reach = settings_.max_shift_px / kCellPx;
-    const Vec2f expected =
-        history_count_ > 0 ? Vec2f(-history_[0].velocity * static_cast<float>(seconds_per_cycle_))
-                           : Vec2f(Vec2f::Zero());
-    Shift best;
-    int best_cost = std::numeric_limits<int>::max();
-    for (int dy = -reach; dy <= reach; ++dy) {
-        for (int dx = -reach; dx <= reach; ++dx) {
-            const Vec2f candidate(static_cast<float>(dx * kCellPx),
-                                  static_cast<float>(dy * kCellPx));
-            int cost = history_count_ == 0
-                           ? 0
-                           : static_cast<int>((candidate - expected).norm() *
-                                              (kExpectedAdvantage / kCellPx) *
-                                              static_cast<float>(active_cells_.size()));
-            for (const auto& cell : active_cells_) {
-                const int x = cell[0] + dx;
-                const int y = cell[1] + dy;
-                const int difference = inside(x, y, before.size())
-                                           ? std::abs(now.at(cell[0], cell[1]) - before.at(x, y))
-                                           : kCostCap;
-                cost += std::min(difference, kCostCap);
-                if (cost >= best_cost) {
-                    break;
-                }
-            }
-            if (cost < best_cost) {
-                best_cost = cost;
-                best = {dx * kCellPx, dy * kCellPx};
-            }
-        }
-    }
-    return best;
+bool MotionEstimator::enough_moved() const noexcept {
+    return static_cast<double>(active_cells_.size()) >=
+           kMinMovingShare * age_.width() * age_.height();
 }
 
-Shift MotionEstimator::search_pixels(const Frame& now, const Frame& before, Shift around,
-                                     int radius, int step) const noexcept {
-    Shift best = around;
-    int best_cost = std::numeric_limits<int>::max();
-    for (int dy = around.dy - radius; dy <= around.dy + radius; dy += step) {
-        for (int dx = around.dx - radius; dx <= around.dx + radius; dx += step) {
-            int cost = 0;
-            for (const auto& cell : active_cells_) {
-                // Four spread pixels stand for the cell.
-                constexpr int kNear = kCellPx / 4;
-                constexpr int kFar = kCellPx - kNear;
-                constexpr int kSamples[4][2] = {
-                    {kNear, kNear}, {kFar, kNear}, {kNear, kFar}, {kFar, kFar}};
-                for (const auto& sample : kSamples) {
-                    const int x = cell[0] * kCellPx + sample[0];
-                    const int y = cell[1] * kCellPx + sample[1];
-                    if (!inside(x, y, size_)) {
-                        continue;
-                    }
-                    const int difference =
-                        inside(x + dx, y + dy, size_)
-                            ? std::abs(grey_at(now, x, y) - grey_at(before, x + dx, y + dy))
-                            : kCostCap;
-                    cost += std::min(difference, kCostCap);
-                }
-                if (cost >= best_cost) {
-                    break;
-                }
-            }
-            if (cost < best_cost) {
-                best_cost = cost;
-                best = {dx, dy};
-            }
-        }
+Vec2f MotionEstimator::path_since(const Frame& frame) const noexcept {
+    const auto age = static_cast<float>(to_seconds(now_ - frame.stamp));
+    if (!held_) {
+        // The velocity is the mean over the last cycle; the acceleration bends the path between its
+        // ends, which stay where they were found.
+        const auto cycle = static_cast<float>(seconds_per_cycle_);
+        return velocity_ * age + acceleration_ * (0.5F * age * (cycle - age));
     }
-    return best;
+    // The velocity is known at the moments in the history, and even changes between.
+    Vec2f path = Vec2f::Zero();
+    float upto = 0.0F;  // s before now
+    Vec2f velocity = velocity_;
+    for (std::size_t n = 0; n < history_count_ && upto < age; ++n) {
+        const auto known = static_cast<float>(to_seconds(now_ - history_[n].stamp));
+        const float length = known - upto;
+        const float part = std::min(age, known) - upto;
+        if (!(length > 0.0F)) {
+            continue;
+        }
+        const Vec2f slope = (history_[n].velocity - velocity) / length;
+        path += velocity * part + slope * (0.5F * part * part);
+        velocity = history_[n].velocity;
+        upto = known;
+    }
+    if (upto < age) {
+        path += velocity * (age - upto);
+    }
+    return path;
 }
 
 Shift MotionEstimator::to(const Frame& frame) const noexcept {
-    // The velocity is the mean over the last cycle; the acceleration bends the path between its
-    // ends, which stay where they were found.
-    const auto age = static_cast<float>(to_seconds(now_ - frame.stamp));
-    const auto cycle = static_cast<float>(seconds_per_cycle_);
-    const Vec2f path = velocity_ * age + acceleration_ * (0.5F * age * (cycle - age));
+    const Vec2f path = path_since(frame);
     return {-static_cast<int>(std::lround(path.x())), -static_cast<int>(std::lround(path.y()))};
 }
 
-void MotionEstimator::remember() noexcept {
+void MotionEstimator::bend_path() noexcept {
     acceleration_ = Vec2f::Zero();
     // The slope over half a cycle: the estimates overlap, so closer ones say little.
     for (std::size_t n = 0; n < history_count_; ++n) {
@@ -237,46 +215,93 @@ void MotionEstimator::remember() noexcept {
     }
     const float fastest = kMaxAcceleration_px;
     acceleration_ = acceleration_.cwiseMax(-fastest).cwiseMin(fastest);
+}
+
+void MotionEstimator::remember(Stamp when) noexcept {
     std::rotate(history_.begin(), history_.end() - 1, history_.end());
-    history_[0] = {now_, velocity_};
+    history_[0] = {when, velocity_};
     history_count_ = std::min(history_count_ + 1, history_.size());
 }
 
-void MotionEstimator::update(const FrameWindow& window, const Frame& newest) noexcept {
-    auto& slot = small_[static_cast<std::size_t>(newest.pattern)];
-    std::swap(slot[0], slot[1]);
-    shrink(newest, slot[0].cells);
-    slot[0].frame = &newest;
-    now_ = newest.stamp;
-    const Frame* before = window.previous(newest.pattern);
-    moving_ = false;
-    if (before == nullptr || before != slot[1].frame || !(before->stamp < newest.stamp)) {
+// Patterns shown once: the move over a whole cycle.
+void MotionEstimator::follow_cycle(const Small& now, const Small& before) noexcept {
+    velocity_ = Vec2f::Zero();
+    if (!enough_moved()) {
+        history_count_ = 0;
         return;
     }
-    const int moved = mark_moving(slot[0].cells, slot[1].cells);
+    const Shift shift = search(now, before, seconds_per_cycle_);
+    const auto seconds = static_cast<float>(seconds_per_cycle_);
+    // `shift` leads from now to then.
+    velocity_ =
+        Vec2f(static_cast<float>(-shift.dx) / seconds, static_cast<float>(-shift.dy) / seconds);
+    bend_path();
+    remember(now_);
+    moving_ = shift.dx != 0 || shift.dy != 0;
+}
+
+// Patterns that are held: the move from one frame of a show to the next. Without such a frame the
+// velocity stays what it was.
+void MotionEstimator::follow_held(const Small& now, const Small* before) noexcept {
+    if (before != nullptr) {
+        const Duration between = now_ - before->frame->stamp;
+        velocity_ = Vec2f::Zero();
+        if (enough_moved()) {
+            const Shift shift = search(now, *before, to_seconds(between));
+            const auto seconds = static_cast<float>(to_seconds(between));
+            velocity_ = Vec2f(static_cast<float>(-shift.dx) / seconds,
+                              static_cast<float>(-shift.dy) / seconds);
+        }
+        remember(now_ - between / 2);
+    }
+    for (std::size_t n = 0; n < history_count_; ++n) {
+        const Past& past = history_[n];
+        moving_ = moving_ || (to_seconds(now_ - past.stamp) <= seconds_per_cycle_ &&
+                              past.velocity != Vec2f::Zero());
+    }
+}
+
+void MotionEstimator::update(const FrameWindow& window, const Frame& newest) noexcept {
+    Small& small = take_small(window, newest.pattern);
+    shrink(newest, small.cells);
+    small.frame = &newest;
+    now_ = newest.stamp;
+    moving_ = false;
+    age_cells();
+    const auto comparable = [&](const Frame* frame) -> const Small* {
+        return frame != nullptr && frame->stamp < newest.stamp ? find_small(*frame) : nullptr;
+    };
+    const FrameWindow::Entry* last = window.fullest(newest.pattern, 1);
+    const Small* cycle = last == nullptr ? nullptr : comparable(last->frame.get());
+    const Small* show = comparable(window.held(newest.pattern));
+    const bool held = show != nullptr || window.frames_of_last_show() > 1;
+    if (held != held_) {
+        held_ = held;
+        history_count_ = 0;
+        velocity_ = Vec2f::Zero();
+    }
+    if (cycle == nullptr) {
+        return;
+    }
+    seconds_per_cycle_ = to_seconds(newest.stamp - last->frame->stamp);
+    const std::uint64_t pushes = window.entries(newest.pattern)[0].count - last->count;
+    const int lifetime = static_cast<int>(std::min<std::uint64_t>(2 * pushes, 255));
+    mark_moving(small, *cycle, lifetime);
+    if (!held_) {
+        follow_cycle(small, *cycle);
+    } else {
+        if (show != nullptr) {
+            mark_moving(small, *show, lifetime);
+        }
+        follow_held(small, show);
+    }
     for (int cy = 0; cy < age_.height(); ++cy) {
         const std::uint8_t* row = age_.row(cy);
         row_disturbed_[static_cast<std::size_t>(cy)] =
             std::any_of(row, row + age_.width(), [](std::uint8_t age) { return age > 0; }) ? 1 : 0;
     }
-    velocity_ = Vec2f::Zero();
-    seconds_per_cycle_ = to_seconds(newest.stamp - before->stamp);
     pair_images(window);
-    if (moved < kMinMovingShare * age_.width() * age_.height()) {
-        history_count_ = 0;
-        return;
-    }
-    Shift shift = search_cells(slot[0].cells, slot[1].cells);
-    shift = search_pixels(newest, *before, shift, kCellPx - 2, 2);
-    shift = search_pixels(newest, *before, shift, 1, 1);
-    const auto seconds = static_cast<float>(seconds_per_cycle_);
-    // `shift` leads from now to then.
-    velocity_ =
-        Vec2f(static_cast<float>(-shift.dx) / seconds, static_cast<float>(-shift.dy) / seconds);
-    remember();
-    moving_ = shift.dx != 0 || shift.dy != 0;
     if (moving_) {
-        pair_images(window);
         choose_cells();
     }
 }
@@ -289,6 +314,9 @@ int MotionEstimator::worst_difference(int x, int y, bool follow) const noexcept 
         if (!inside(x + a.dx, y + a.dy, size_) || !inside(x + b.dx, y + b.dy, size_)) {
             return 255;
         }
+        if (!saw(*pair.now, y + a.dy) || !saw(*pair.before, y + b.dy)) {
+            continue;
+        }
         const int difference = std::abs(grey_at(*pair.now, x + a.dx, y + a.dy) -
                                         grey_at(*pair.before, x + b.dx, y + b.dy));
         worst = std::max(worst, difference);
@@ -298,16 +326,22 @@ int MotionEstimator::worst_difference(int x, int y, bool follow) const noexcept 
 
 void MotionEstimator::pair_images(const FrameWindow& window) noexcept {
     pairs_.clear();
+    const auto add = [&](const Frame* now, const Frame* before) {
+        if (now != nullptr && before != nullptr) {
+            pairs_.push_back({now, before, to(*now), to(*before)});
+        }
+    };
     for (int pattern = 0; pattern < patterns_; ++pattern) {
-        const Frame* now = window.newest(pattern);
-        const Frame* before = window.previous(pattern);
+        const FrameWindow::Entry* now = window.fullest(pattern, 0);
+        const FrameWindow::Entry* before = window.fullest(pattern, 1);
         // The move is even for a short time only: of a long cycle the newest images alone can be
         // held against those a cycle before.
         if (now != nullptr && before != nullptr &&
             (patterns_ <= kShortCycle ||
-             to_seconds(now_ - now->stamp) < 0.5 * seconds_per_cycle_)) {
-            pairs_.push_back({now, before, to(*now), to(*before)});
+             to_seconds(now_ - now->frame->stamp) < 0.5 * seconds_per_cycle_)) {
+            add(now->frame.get(), before->frame.get());
         }
+        add(window.newest(pattern), window.held(pattern));
     }
 }
 

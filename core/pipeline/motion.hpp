@@ -21,10 +21,13 @@ struct Shift {
 /// Finds what moves in front of the camera and how, so that the images of a window can be laid on
 /// top of each other before they are decoded.
 ///
-/// Two images of the same pattern differ only where something moved. The move is the one shift that
-/// brings most of what differs into agreement (block matching, coarse to fine); it is assumed even
-/// over the window. Each cell of 8 x 8 pixels then follows the move, or stands still, whichever
-/// explains its images better.
+/// Two images of the same pattern differ only where something moved; rows that either of them did
+/// not see cleanly are left out. The move is the one shift that brings most of what differs into
+/// agreement (block matching, coarse to fine). Where every pattern is shown once, the images are a
+/// cycle apart and the move is assumed even over the window. Where patterns are held for two frames
+/// or more, the images are one frame apart, and the path is put together from such short moves.
+/// Each cell of 8 x 8 pixels then follows the move, or stands still, whichever explains its images
+/// better.
 class MotionEstimator {
  public:
     static constexpr int kCellPx = 8;
@@ -63,6 +66,8 @@ class MotionEstimator {
     /// Largest difference between the two newest images of a pattern, over all patterns, at a pixel
     /// of the newest frame that follows the move or stands still; grey levels.
     [[nodiscard]] int worst_difference(int x, int y, bool follow) const noexcept;
+    /// Image motion of what moves, from when `frame` was exposed to the newest frame, px.
+    [[nodiscard]] Vec2f path_since(const Frame& frame) const noexcept;
     /// Centre of the cells that follow, px of the newest frame.
     [[nodiscard]] Vec2f centre_px() const noexcept { return centre_; }
     [[nodiscard]] int cells_x() const noexcept { return age_.width(); }
@@ -73,14 +78,26 @@ class MotionEstimator {
         Image<std::uint8_t> cells;
         const Frame* frame = nullptr;
     };
+    using SmallSlot = std::array<Small, FrameWindow::kDepth + 1>;  // one more than the window keeps
     void shrink(const Frame& frame, Image<std::uint8_t>& cells) const noexcept;
-    [[nodiscard]] int mark_moving(const Image<std::uint8_t>& now,
-                                  const Image<std::uint8_t>& before) noexcept;
-    [[nodiscard]] Shift search_cells(const Image<std::uint8_t>& now,
-                                     const Image<std::uint8_t>& before) const noexcept;
+    [[nodiscard]] Small& take_small(const FrameWindow& window, int pattern) noexcept;
+    /// Null when the frame was not shrunk.
+    [[nodiscard]] const Small* find_small(const Frame& frame) const noexcept;
+    /// Lists the cells that differ and makes them young.
+    void mark_moving(const Small& now, const Small& before, int lifetime) noexcept;
+    void age_cells() noexcept;
+    /// From now to before, by the listed cells.
+    [[nodiscard]] Shift search(const Small& now, const Small& before,
+                               double seconds) const noexcept;
+    [[nodiscard]] Shift search_cells(const Small& now, const Small& before,
+                                     double seconds) const noexcept;
     [[nodiscard]] Shift search_pixels(const Frame& now, const Frame& before, Shift around,
                                       int radius, int step) const noexcept;
-    void remember() noexcept;
+    [[nodiscard]] bool enough_moved() const noexcept;
+    void follow_cycle(const Small& now, const Small& before) noexcept;
+    void follow_held(const Small& now, const Small* before) noexcept;
+    void remember(Stamp when) noexcept;
+    void bend_path() noexcept;
     void choose_cells() noexcept;
     void pair_images(const FrameWindow& window) noexcept;
 
@@ -90,10 +107,11 @@ class MotionEstimator {
     Stamp now_;
     double seconds_per_cycle_ = 0.0;
     bool moving_ = false;
+    bool held_ = false;  // patterns are held: the path is in the history
     Vec2f velocity_ = Vec2f::Zero();
     Vec2f acceleration_ = Vec2f::Zero();
     Vec2f centre_ = Vec2f::Zero();
-    std::vector<std::array<Small, FrameWindow::kDepth>> small_;
+    std::vector<SmallSlot> small_;
     Image<std::uint8_t> age_;     // pushes for which a cell stays disturbed
     Image<std::uint8_t> active_;  // moved between the newest two images of one pattern
     Image<std::uint8_t> follows_;

@@ -13,15 +13,10 @@ namespace {
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 // Differences of one pixel below this are camera noise and compression, grey levels.
 constexpr float kPixelNoise = 8.0F;
-// Step for the slope of the projector coordinate along the image motion, s.
-constexpr double kSlopeStepS = 1e-3;
 
 }  // namespace
 
-double DepthDecoder::Impl::drift_px_per_s() noexcept {
-    if (!geometry) {
-        return 0.0;
-    }
+double DepthDecoder::Impl::find_moving_depth_mm() noexcept {
     // The depth of what moves, from the depth image before this one.
     moving_depths.clear();
     constexpr int kCell = MotionEstimator::kCellPx;
@@ -42,13 +37,21 @@ double DepthDecoder::Impl::drift_px_per_s() noexcept {
         moving_depths.begin() + static_cast<std::ptrdiff_t>(moving_depths.size() / 2);
     std::nth_element(moving_depths.begin(), middle, moving_depths.end());
     const double z_mm = *middle * depth.depth_unit_mm;
-    const Vec2f centre = motion->centre_px();
-    const Vec2f ahead = centre + motion->velocity_px() * static_cast<float>(kSlopeStepS);
-    return (geometry->coordinate_of_depth(static_cast<double>(ahead.x()),
-                                          static_cast<double>(ahead.y()), z_mm) -
-            geometry->coordinate_of_depth(static_cast<double>(centre.x()),
-                                          static_cast<double>(centre.y()), z_mm)) /
-           kSlopeStepS;
+    return z_mm;
+}
+
+// How far the projector coordinate of what moves was from where it is now, px.
+double DepthDecoder::Impl::drift_px_since(const Frame& frame) const noexcept {
+    if (!geometry || !(moving_depth_mm > 0.0)) {
+        return 0.0;
+    }
+    const Vec2f here = motion->centre_px();
+    const Vec2f there = here - motion->path_since(frame);
+    const auto coordinate_at = [&](const Vec2f& at) {
+        return geometry->coordinate_of_depth(static_cast<double>(at.x()),
+                                             static_cast<double>(at.y()), moving_depth_mm);
+    };
+    return coordinate_at(there) - coordinate_at(here);
 }
 
 void DepthDecoder::Impl::follow_images() noexcept {
@@ -57,7 +60,6 @@ void DepthDecoder::Impl::follow_images() noexcept {
     if (!can_follow) {
         return;
     }
-    const double drift = moving_drift_px_per_s;
     for (std::size_t sine = 0; sine < still.size(); ++sine) {
         const SinePlan& period = plan.sines[sine];
         Images& moved = following[sine];
@@ -66,9 +68,15 @@ void DepthDecoder::Impl::follow_images() noexcept {
         std::array<double, kMaxTaps> phases{};
         for (std::size_t n = 0; n < count; ++n) {
             const Frame& frame = *moved.frames[n];
-            const double back_s = to_seconds(frame.stamp - *last_stamp);
-            phases[n] = plan.pattern_phase_rad[static_cast<std::size_t>(frame.pattern)] +
-                        2.0 * std::numbers::pi / period.period_px * drift * back_s;
+            const double drift_rad =
+                2.0 * std::numbers::pi / period.period_px * drift_px_since(frame);
+            phases[n] = plan.pattern_phase_rad[static_cast<std::size_t>(frame.pattern)] + drift_rad;
+            const double back_s = to_seconds(*last_stamp - frame.stamp);
+            if (back_s > 0.0) {
+                drift_rad_per_cycle =
+                    std::max(drift_rad_per_cycle,
+                             std::fabs(drift_rad) / back_s * motion->seconds_per_cycle());
+            }
         }
         can_follow = can_follow && fit_taps(std::span(phases).first(count), moved.taps);
         for (std::size_t n = 0; n < count; ++n) {
@@ -76,9 +84,6 @@ void DepthDecoder::Impl::follow_images() noexcept {
             moved.taps.taps[n].dx = shift.dx;
             moved.taps.taps[n].dy = shift.dy;
         }
-        drift_rad_per_cycle = std::max(
-            drift_rad_per_cycle, std::fabs(2.0 * std::numbers::pi / period.period_px * drift) *
-                                     motion->seconds_per_cycle());
     }
 }
 

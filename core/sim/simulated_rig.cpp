@@ -13,8 +13,10 @@
 namespace xtrack {
 namespace {
 
-// Frames that consumers may hold at once before new ones are dropped.
-constexpr std::size_t kPoolFrames = 24;
+// Frames that consumers may hold at once before new ones are dropped: what a decoder keeps of every
+// pattern, and a queue.
+constexpr std::size_t kPoolFramesPerPattern = 4;
+constexpr std::size_t kPoolFrames = 12;
 // After the last step: time for the last events to be decided.
 constexpr double kTailS = 0.5;
 
@@ -27,7 +29,8 @@ class SimulatedRig::Impl {
           sensor(given.camera, given.seed, given.rig.camera.size),
           renderer(given, sensor.channels()),
           truth_maker(renderer),
-          pool(kPoolFrames, given.rig.camera.size,
+          pool(kPoolFrames + kPoolFramesPerPattern * given.patterns.patterns.size(),
+               given.rig.camera.size,
                given.camera.colour ? PixelFormat::bgr8 : PixelFormat::grey8) {
         double end_s = 0.0;
         for (const sim::HandMotion& hand : renderer.hands()) {

@@ -52,7 +52,11 @@ struct DecodeStatus {
 /// skin's shade and the ambient light.
 ///
 /// @thread one at a time
-/// @ownership holds the FramePtrs of the window, at most two a pattern; copies no pixels
+/// Where a pattern is held for some camera frames, the clean rows of two of them are averaged, and
+/// motion is measured from one frame to the next.
+/// @ownership holds the FramePtrs of the window, at most two a pattern, four where patterns are
+/// held
+///            for more than one frame; copies no pixels
 /// @since 0.1
 class DepthDecoder {
  public:

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstdlib>
+#include <limits>
+
+#include "core/pipeline/motion.hpp"
+#include "core/pipeline/motion_pixels.hpp"
+
+namespace xtrack {
+namespace {
+
+using motion::grey_at;
+using motion::inside;
+using motion::kCostCap;
+using motion::saw_cells;
+
+// A match that is farther from the one expected must be better by this much a cell, grey levels:
+// fine fringes match themselves a period away.
+constexpr float kExpectedAdvantage = 0.3F;
+
+}  // namespace
+
+Shift MotionEstimator::search_cells(const Small& now, const Small& before,
+                                    double seconds) const noexcept {
+    const int reach = settings_.max_shift_px / kCellPx;
+    const Vec2f expected = history_count_ > 0
+                               ? Vec2f(-history_[0].velocity * static_cast<float>(seconds))
+                               : Vec2f(Vec2f::Zero());
+    Shift best;
+    int best_cost = std::numeric_limits<int>::max();
+    for (int dy = -reach; dy <= reach; ++dy) {
+        for (int dx = -reach; dx <= reach; ++dx) {
+            const Vec2f candidate(static_cast<float>(dx * kCellPx),
+                                  static_cast<float>(dy * kCellPx));
+            int cost = history_count_ == 0
+                           ? 0
+                           : static_cast<int>((candidate - expected).norm() *
+                                              (kExpectedAdvantage / kCellPx) *
+                                              static_cast<float>(active_cells_.size()));
+            for (const auto& cell : active_cells_) {
+                const int x = cell[0] + dx;
+                const int y = cell[1] + dy;
+                const int difference =
+                    inside(x, y, before.cells.size()) && saw_cells(*before.frame, y, size_.height)
+                        ? std::abs(now.cells.at(cell[0], cell[1]) - before.cells.at(x, y))
+                        : kCostCap;
+                cost += std::min(difference, kCostCap);
+                if (cost >= best_cost) {
+                    break;
+                }
+            }
+            if (cost < best_cost) {
+                best_cost = cost;
+                best = {dx * kCellPx, dy * kCellPx};
+            }
+        }
+    }
+    return best;
+}
+
+Shift MotionEstimator::search_pixels(const Frame& now, const Frame& before, Shift around,
+                                     int radius, int step) const noexcept {
+    Shift best = around;
+    int best_cost = std::numeric_limits<int>::max();
+    for (int dy = around.dy - radius; dy <= around.dy + radius; dy += step) {
+        for (int dx = around.dx - radius; dx <= around.dx + radius; dx += step) {
+            int cost = 0;
+            for (const auto& cell : active_cells_) {
+                // Four spread pixels stand for the cell.
+                constexpr int kNear = kCellPx / 4;
+                constexpr int kFar = kCellPx - kNear;
+                constexpr int kSamples[4][2] = {
+                    {kNear, kNear}, {kFar, kNear}, {kNear, kFar}, {kFar, kFar}};
+                for (const auto& sample : kSamples) {
+                    const int x = cell[0] * kCellPx + sample[0];
+                    const int y = cell[1] * kCellPx + sample[1];
+                    if (!inside(x, y, size_)) {
+                        continue;
+                    }
+                    const int difference =
+                        inside(x + dx, y + dy, size_) && saw(before, y + dy)
+                            ? std::abs(grey_at(now, x, y) - grey_at(before, x + dx, y + dy))
+                            : kCostCap;
+                    cost += std::min(difference, kCostCap);
+                }
+                if (cost >= best_cost) {
+                    break;
+                }
+            }
+            if (cost < best_cost) {
+                best_cost = cost;
+                best = {dx, dy};
+            }
+        }
+    }
+    return best;
+}
+
+Shift MotionEstimator::search(const Small& now, const Small& before,
+                              double seconds) const noexcept {
+    Shift shift = search_cells(now, before, seconds);
+    shift = search_pixels(*now.frame, *before.frame, shift, kCellPx - 2, 2);
+    return search_pixels(*now.frame, *before.frame, shift, 1, 1);
+}
+
+}  // namespace xtrack
