@@ -17,6 +17,10 @@ case $way in
             "-DCMAKE_CXX_COMPILER=$compiler" -DCMAKE_BUILD_TYPE=Release >"$work/log" 2>&1 &&
             "$cmake" --build "$work/consumer" >>"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
         program=$work/consumer/consumer
+        # The first program of the README builds against the installed libraries, too.
+        "$cmake" -S "$consumer/../../../examples/hello" -B "$work/hello" -G Ninja \
+            "-DCMAKE_PREFIX_PATH=$prefix" "-DCMAKE_CXX_COMPILER=$compiler" >"$work/log" 2>&1 &&
+            "$cmake" --build "$work/hello" >>"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
         ;;
     pkg_config)
         command -v pkg-config >/dev/null || { echo "SKIPPED: pkg-config is not installed"; exit 77; }
