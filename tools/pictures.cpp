@@ -3,15 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+
+#include "core/base/file.hpp"
+#include "core/capture/image_codec.hpp"
 
 namespace xtrack::tools {
 
@@ -172,25 +174,10 @@ Result<void> ContactSheet::write(const std::filesystem::path& path) const {
 }
 
 Result<void> write_png(const std::filesystem::path& path, const cv::Mat& image) {
-    std::filesystem::path temporary = path;
-    temporary += ".part.png";
-    bool written = false;
-    try {
-        written = cv::imwrite(temporary.string(), image);
-    } catch (const cv::Exception&) {
-        written = false;
-    }
-    std::error_code error;
-    if (written) {
-        std::filesystem::rename(temporary, path, error);
-    }
-    if (!written || error) {
-        std::filesystem::remove(temporary, error);
-        return Error{ErrorCode::io, path.string() +
-                                        ": cannot write the picture; is there space, and "
-                                        "may you write to this folder?"};
-    }
-    return {};
+    const ImageView<const std::uint8_t> pixels{image.data, image.cols * 3, image.rows,
+                                               static_cast<std::ptrdiff_t>(image.step[0])};
+    const auto png = capture::encode_png(pixels, PixelFormat::bgr8);
+    return png ? base::write_file(path, *png) : Result<void>(png.error());
 }
 
 }  // namespace xtrack::tools
