@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -164,7 +165,10 @@ std::string json_of(const std::string& method, const std::string& note,
         }
         frames.push_back(frame);
     }
-    return nlohmann::ordered_json{{"method", method}, {"note", note}, {"frames", frames}}.dump() +
+    // Names of files need not be UTF-8, of which JSON is made.
+    constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
+    return nlohmann::ordered_json{{"method", method}, {"note", note}, {"frames", frames}}.dump(
+               -1, ' ', false, kReplace) +
            "\n";
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -202,7 +201,8 @@ void print_json(const std::vector<Recording>& recordings, const GestureScorer& s
     out["unlabelled"] = {{"events", scorer.unlabelled_events()},
                          {"hours", scorer.unlabelled_hours()},
                          {"per_hour", to_json(scorer.false_per_hour())}};
-    fmt::print("{}\n", out.dump(2));
+    // Names of folders need not be UTF-8, of which JSON is made.
+    fmt::print("{}\n", out.dump(2, ' ', false, json::error_handler_t::replace));
 }
 
 int evaluate(const EvalOptions& options) {

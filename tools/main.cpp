@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
 #include <exception>
 #include <string>
 
@@ -44,7 +45,14 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     try {
-        return run(argc, argv);
+        const int status = run(argc, argv);
+        // What is still in the buffer fails last, and what failed before is remembered.
+        if (status == 0 && (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)) {
+            return xtrack::tools::fail({xtrack::ErrorCode::io,
+                                        "the answer cannot be written; is the disk full, or what "
+                                        "reads it gone?"});
+        }
+        return status;
     } catch (const std::exception& error) {
         return xtrack::tools::fail({xtrack::ErrorCode::io, error.what()});
     }

@@ -135,6 +135,7 @@ int play(Session& session, const StreamOptions& options, Pace pace, std::size_t 
             for (const Hand& hand : hands->all()) {
                 fmt::print("{}\n", to_json(*hands, hand));
             }
+            std::fflush(stdout);
         });
     }
     // A bar between lines of events on the same screen would help nobody.

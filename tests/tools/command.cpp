@@ -24,7 +24,8 @@ namespace fs = std::filesystem;
 
 constexpr std::chrono::milliseconds kPoll{20};
 
-pid_t start(const std::vector<std::string>& arguments, const fs::path& folder) {
+pid_t start(const std::vector<std::string>& arguments, const fs::path& folder,
+            const char* out = "stdout") {
     std::vector<std::string> words = {XTRACK_COMMAND};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
@@ -38,7 +39,7 @@ pid_t start(const std::vector<std::string>& arguments, const fs::path& folder) {
     posix_spawn_file_actions_init(&files);
     posix_spawn_file_actions_addchdir_np(&files, folder.c_str());
     posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "stdout", O_WRONLY | O_CREAT, 0600);
+    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, out, O_WRONLY | O_CREAT, 0600);
     posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "stderr", O_WRONLY | O_CREAT, 0600);
     pid_t child = 0;
     const int failed = posix_spawn(&child, XTRACK_COMMAND, &files, nullptr, argv.data(), environ);
@@ -58,9 +59,9 @@ Outcome outcome_of(pid_t child, const fs::path& folder) {
 
 }  // namespace
 
-Outcome xtrack_command(const std::vector<std::string>& arguments) {
+Outcome xtrack_command(const std::vector<std::string>& arguments, const char* out) {
     const TemporaryFolder folder;
-    return outcome_of(start(arguments, folder.path()), folder.path());
+    return outcome_of(start(arguments, folder.path(), out), folder.path());
 }
 
 Outcome interrupted_command(const std::vector<std::string>& arguments, std::size_t lines,

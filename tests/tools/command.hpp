@@ -16,7 +16,8 @@ struct Outcome {
 };
 
 /// Runs `xtrack <arguments>` in an empty folder of its own and waits for it.
-Outcome xtrack_command(const std::vector<std::string>& arguments);
+/// @param out where its stdout goes; `Outcome::out` is empty where that is outside the folder
+Outcome xtrack_command(const std::vector<std::string>& arguments, const char* out = "stdout");
 
 /// The same, with SIGINT sent once stdout holds `lines` lines, or after `patience` in any case.
 Outcome interrupted_command(const std::vector<std::string>& arguments, std::size_t lines,

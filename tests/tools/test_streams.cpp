@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <csignal>
+#include <filesystem>
 
 #include <gmock/gmock.h>
 
@@ -40,6 +41,15 @@ TEST(Replay, StatisticsGoToStderr) {
     EXPECT_EQ(outcome.status, 0);
     EXPECT_EQ(outcome.out, "");
     EXPECT_THAT(outcome.err, HasSubstr("frames"));
+}
+
+TEST(Replay, ToAFullDiskFails) {
+    if (!std::filesystem::exists("/dev/full")) {
+        GTEST_SKIP() << "this system has no /dev/full";
+    }
+    const Outcome outcome = xtrack_command({"replay", kSwipe, "--events", "jsonl"}, "/dev/full");
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_TRUE(is_one_line_message(outcome.err)) << outcome.err;
 }
 
 // What was begun is ended, what is known is printed, and the status is that of a run that ended.
