@@ -151,7 +151,7 @@ class DecodeRun {
                 return ok;
             }
             if (chosen_.decoder.push(item.frame).state == DecodeState::depth_ready) {
-                if (auto ok = write_set(); !ok) {
+                if (auto ok = write_set(i); !ok) {
                     return ok;
                 }
             }
@@ -191,12 +191,14 @@ class DecodeRun {
         return chosen_.decoder.set_order_depth((*depth)->view(), kDepthUnitMm);
     }
 
-    Result<void> write_set() {
+    Result<void> write_set(std::size_t newest) {
         const DepthFrame& depth = chosen_.decoder.depth();
         const auto entries = recording_.entries();
-        std::size_t index = 0;
-        while (index + 1 < entries.size() && entries[index].sequence != depth.sequence) {
-            ++index;
+        // Backwards and by both: neither stamps nor sequences need to be different everywhere.
+        std::size_t index = newest;
+        while (index > 0 &&
+               (entries[index].sequence != depth.sequence || entries[index].stamp != depth.stamp)) {
+            --index;
         }
         if (!output_) {
             auto output = make_output(options_.out);

@@ -220,6 +220,27 @@ TEST_F(Recording, WithoutDamageIsDecodedWhole) {
     EXPECT_NEAR(depth.at(48, 32) * kDepthUnitMm, kWall_mm, 5.0);  // from 8-bit images of one period
 }
 
+TEST_F(Recording, WithoutCountsKeepsEveryDepthApart) {
+    write_fringes(recording_);
+    const auto folders = [&] {
+        const Outcome outcome =
+            xtrack_command({"decode", recording_.string(), "--all", "--out", out_.string()});
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        return std::distance(fs::directory_iterator(out_), fs::directory_iterator{});
+    };
+    const auto counted = folders();
+    EXPECT_GT(counted, 1);
+    std::string list = "file,t_us,sequence,pattern\n";
+    const auto recording = RecordingReader::open(recording_);
+    ASSERT_TRUE(recording.ok());
+    for (const RecordingEntry& e : recording->entries()) {
+        list +=
+            e.file + "," + std::to_string(e.stamp.us()) + ",0," + std::to_string(e.pattern) + "\n";
+    }
+    set_text(recording_ / "frames.csv", list);
+    EXPECT_EQ(folders(), counted);
+}
+
 TEST_F(Recording, WithoutDamageIsReplayed) {
     write_joints(recording_);
     EXPECT_EQ(xtrack_command({"replay", recording_.string()}).status, 0);
