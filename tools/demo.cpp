@@ -88,6 +88,7 @@ nlohmann::ordered_json number(double value) {
 
 nlohmann::ordered_json to_json(const Scored& scored) {
     const TrialResult& r = scored.result;
+    const bool timed = r.statistics.latency.count > 0;  // a replay has no latency
     return {{"preset", scored.preset},
             {"scripted", r.score.labelled},
             {"found", r.score.correct},
@@ -96,12 +97,12 @@ nlohmann::ordered_json to_json(const Scored& scored) {
             {"after_commit_ms_p50", number(percentile(r.after_commit_ms, 0.5))},
             {"after_commit_ms_p95", number(percentile(r.after_commit_ms, 0.95))},
             {"depth_rms_mm_p50", number(percentile(r.depth_rms_mm, 0.5))},
-            {"depth_off_mean_share", number(percentile(r.depth_off, 0.5))},
-            {"depth_missing_share", number(percentile(r.depth_missing, 0.5))},
+            {"depth_off_share_p50", number(percentile(r.depth_off, 0.5))},
+            {"depth_missing_share_p50", number(percentile(r.depth_missing, 0.5))},
             {"palm_error_mm_p50", number(percentile(r.palm_error_mm, 0.5))},
             {"palm_error_mm_p95", number(percentile(r.palm_error_mm, 0.95))},
-            {"latency_ms_median", r.statistics.latency.median_us * 1e-3},
-            {"latency_ms_p99", r.statistics.latency.p99_us * 1e-3}};
+            {"latency_ms_p50", timed ? number(r.statistics.latency.median_us * 1e-3) : nullptr},
+            {"latency_ms_p99", timed ? number(r.statistics.latency.p99_us * 1e-3) : nullptr}};
 }
 
 std::string cell(double value, const char* unit) {
