@@ -8,7 +8,7 @@ trap 'rm -rf "$work"' EXIT
 mkdir -p "$work/bin" "$work/tree"
 cp -r "$sources/scripts" "$work/tree/scripts"
 # A system with these commands and no others; `id` says who we are.
-for tool in bash env awk grep tr dirname head sed cat sort; do
+for tool in bash env awk grep tr dirname head sed cat sort mktemp tee rm nproc; do
     ln -s "$(command -v $tool)" "$work/bin/$tool"
 done
 printf '#!/bin/sh\necho "${FAKE_ID:-1000}"\n' >"$work/bin/id"
@@ -64,3 +64,22 @@ rm "$work/apt"
 printf '#!/bin/sh\necho installed\n' >"$work/bin/dpkg-query"
 expect 127 'cmake'
 [ ! -e "$work/apt" ] || { echo "FAILED: apt-get was run with nothing missing"; exit 1; }
+
+# scripts/test closes with what ctest said of every run, and fails with whatever fails first.
+printf '#!/bin/sh\n[ "$*" != "$(cat %s/failing)" ]\n' "$work" >"$work/bin/cmake"
+cat >"$work/bin/ctest" <<FAKE
+#!/bin/sh
+[ "\$*" = "\$(cat $work/failing)" ] && echo '86% tests passed, 1 tests failed out of 7' && exit 8
+echo '100% tests passed, 0 tests failed out of 7'
+FAKE
+chmod +x "$work/bin/cmake" "$work/bin/ctest"
+echo nothing >"$work/failing"
+script='test' expect 0 'tsan: 100% tests passed, 0 tests failed out of 7'
+for preset in release asan tsan; do
+    echo "--preset $preset" >"$work/failing"
+    script='test' expect 8 '86% tests passed, 1 tests failed out of 7'
+    echo "--build --preset $preset" >"$work/failing"
+    script='test' expect 1 "$preset: build"
+    grep -q 'all passed' "$work/out" && { echo "FAILED: a build that fails passes"; exit 1; }
+done
+exit 0
