@@ -16,7 +16,10 @@ namespace {
 constexpr double kRotationTolerance = 1e-3;
 // Relative to the size of its entries, below this a matrix is singular for our purposes.
 constexpr double kSingularTolerance = 1e-9;
-constexpr double kMaxFocal_px = 1e6;
+// Focal lengths, principal point, skew: what is larger overflows on its way through floats.
+constexpr double kMaxMatrix_px = 1e6;
+// Coefficients of real lenses stay below a thousand; the same bound for the same reason.
+constexpr double kMaxDistortion = 1e6;
 constexpr double kMinBaseline_mm = 1e-3;
 constexpr double kMaxLength_mm = 1e6;
 
@@ -50,7 +53,10 @@ Result<void> check_pinhole(const std::string& who, const Pinhole& p) {
     if (!m.allFinite()) {
         return bad(field, "holds NaN or infinity; give finite numbers");
     }
-    if (!(m(0, 0) > 0.0 && m(1, 1) > 0.0 && m(0, 0) < kMaxFocal_px && m(1, 1) < kMaxFocal_px)) {
+    if (!(m.cwiseAbs().maxCoeff() < kMaxMatrix_px)) {
+        return bad(field, "holds a number of a million or more; give pixels");
+    }
+    if (!(m(0, 0) > 0.0 && m(1, 1) > 0.0)) {
         return bad(field,
                    "is singular or has focal lengths (entries 0,0 and 1,1) that are not "
                    "over 0; give them in pixels");
@@ -61,6 +67,9 @@ Result<void> check_pinhole(const std::string& who, const Pinhole& p) {
     for (const double k : p.distortion) {
         if (!std::isfinite(k)) {
             return bad(who + "_distortion", "holds NaN or infinity; give k1 k2 p1 p2 k3 ...");
+        }
+        if (std::abs(k) > kMaxDistortion) {
+            return bad(who + "_distortion", "holds a number over a million; calibrate again");
         }
     }
     return {};
@@ -90,6 +99,9 @@ Result<void> check_interaction(const Mat4d& m) {
         return bad(
             "interaction_from_camera",
             "is not rigid; give a rotation or reflection, an offset in mm, and 0 0 0 1 last");
+    }
+    if (m.topRightCorner<3, 1>().cwiseAbs().maxCoeff() > kMaxLength_mm) {
+        return bad("interaction_from_camera", "has an offset of over a kilometre; give mm");
     }
     return {};
 }

@@ -71,8 +71,18 @@ TEST(Rig, NanAndAbsurdNumbersAreRefused) {
     rig.camera.matrix(0, 2) = nan;
     expect_refused(rig, "camera_matrix");
     rig = good_rig();
+    rig.camera.matrix(0, 2) = 1e300;
+    expect_refused(rig, "camera_matrix");
+    rig = good_rig();
     rig.projector->distortion[4] = nan;
     expect_refused(rig, "projector_distortion");
+    rig = good_rig();
+    rig.projector->distortion[4] = -1e300;
+    expect_refused(rig, "projector_distortion");
+    rig = good_rig();
+    rig.interaction_from_camera = Mat4d::Identity();
+    (*rig.interaction_from_camera)(1, 3) = 1e300;
+    expect_refused(rig, "interaction_from_camera");
     rig = good_rig();
     rig.projector_from_camera_R(1, 1) = nan;
     expect_refused(rig, "projector_from_camera_R");
