@@ -8,7 +8,7 @@ void EventQueue::push(const GestureEvent& event) {
     if (count_ == kCapacity) {
         oldest_ = (oldest_ + 1) % kCapacity;
         --count_;
-        ++dropped_;
+        dropped_ += has_reader_ ? 1U : 0U;
     }
     ring_[(oldest_ + count_) % kCapacity] = event;
     ++count_;
@@ -16,6 +16,7 @@ void EventQueue::push(const GestureEvent& event) {
 
 bool EventQueue::pop(GestureEvent& event) {
     const MutexLock lock(mutex_);
+    has_reader_ = true;
     if (count_ == 0) {
         return false;
     }

@@ -12,7 +12,8 @@
 namespace xtrack {
 
 /// Events for a program that polls. Holds the newest kCapacity events; when it is full the oldest
-/// is dropped and counted, so that a reader which stalls finds the present and not the past.
+/// is dropped, so that a reader which stalls finds the present and not the past. Drops are counted
+/// from the first pop() on: a program that never polls has lost nothing.
 /// @thread any
 class EventQueue {
  public:
@@ -29,6 +30,7 @@ class EventQueue {
     std::size_t oldest_ XTRACK_GUARDED_BY(mutex_) = 0;
     std::size_t count_ XTRACK_GUARDED_BY(mutex_) = 0;
     std::uint64_t dropped_ XTRACK_GUARDED_BY(mutex_) = 0;
+    bool has_reader_ XTRACK_GUARDED_BY(mutex_) = false;
 };
 
 }  // namespace xtrack

@@ -69,7 +69,7 @@ struct SessionStatistics {
     std::uint64_t rejected = 0;  ///< of these: damaged, of an unknown pattern, or of another size
     std::uint64_t depth_frames = 0;
     std::uint64_t events = 0;
-    std::uint64_t events_dropped = 0;  ///< lost by a reader that polled too slowly
+    std::uint64_t events_dropped = 0;  ///< lost by a reader that polled too slowly; 0 without one
     TimeStatistics decode;             ///< frame to depth
     TimeStatistics track;              ///< depth to hands
     TimeStatistics recognise;          ///< hands to events

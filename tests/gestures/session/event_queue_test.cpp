@@ -27,12 +27,13 @@ TEST(EventQueue, GivesEventsInOrder) {
 
 TEST(EventQueue, KeepsTheNewestWhenFull) {
     EventQueue queue;
+    GestureEvent e;
+    EXPECT_FALSE(queue.pop(e));  // there is a reader
     const int pushed = static_cast<int>(EventQueue::kCapacity) + 10;
     for (int i = 0; i < pushed; ++i) {
         queue.push(event_of(i));
     }
     EXPECT_EQ(queue.dropped(), 10U);
-    GestureEvent e;
     ASSERT_TRUE(queue.pop(e));
     EXPECT_EQ(e.gesture_id, 10);
     int last = e.gesture_id;
@@ -41,6 +42,17 @@ TEST(EventQueue, KeepsTheNewestWhenFull) {
         last = e.gesture_id;
     }
     EXPECT_EQ(last, pushed - 1);
+}
+
+TEST(EventQueue, ThatNobodyReadsLosesNothing) {
+    EventQueue queue;
+    for (int i = 0; i < static_cast<int>(EventQueue::kCapacity) + 10; ++i) {
+        queue.push(event_of(i));
+    }
+    EXPECT_EQ(queue.dropped(), 0U);
+    GestureEvent e;
+    ASSERT_TRUE(queue.pop(e));
+    EXPECT_EQ(e.gesture_id, 10);
 }
 
 }  // namespace
