@@ -25,6 +25,19 @@ void* operator new(std::size_t size) {
 }
 void operator delete(void* p) noexcept { std::free(p); }
 void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+#ifdef __GLIBC__
+// Pixels are aligned, and come this way.
+void* operator new(std::size_t size, std::align_val_t alignment) {
+    ++g_allocations;
+    const auto unit = static_cast<std::size_t>(alignment);
+    if (void* p = std::aligned_alloc(unit, (size + unit - 1) / unit * unit)) {
+        return p;
+    }
+    throw std::bad_alloc();
+}
+void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+#endif
 
 namespace xtrack::base {
 namespace {
@@ -69,6 +82,8 @@ TEST(FramePool, AllocatesNothingOnceItStands) {
         ASSERT_TRUE(a && b);
     }
     EXPECT_EQ(g_allocations.load() - before, 0);
+    { const FramePool another(1, {8, 4}, PixelFormat::grey8); }
+    EXPECT_GT(g_allocations.load(), before) << "nothing is counted";
 }
 
 TEST(FramePool, FramesMayOutliveIt) {
