@@ -22,6 +22,8 @@ constexpr double kTypicalFarMm = 1500.0;
 // R is a rotation to this; a transposed or scaled matrix is far outside.
 constexpr double kRotationTolerance = 1e-3;
 constexpr int kProjectorIterations = 5;
+// A step below this leaves an error far below it: each is a few per cent of the one before, px.
+constexpr double kProjectorConverged_px = 1e-3;
 
 Error bad(const std::string& what) { return Error{ErrorCode::invalid_argument, "rig: " + what}; }
 
@@ -208,16 +210,27 @@ void Triangulation::undistort_projector_row(int y, int count, float* coordinate_
     if (!projector_.distorted()) {
         return;
     }
+    double shift =
+        0.0;  // of the pixel before: the lens is smooth, so it is nearly that of the next
     for (int u = 0; u < count; ++u) {
         const double seen = static_cast<double>(coordinate_px[u]);
         if (!std::isfinite(seen)) {
             continue;
         }
         const Ratio r = ratio(u, y);
-        double ideal = seen;
+        double ideal = seen - shift;
         for (int n = 0; n < kProjectorIterations; ++n) {
             const double z = (d_ * ideal - b_) / (r.a - r.c * ideal);
-            ideal = seen - lens_shift_px(r, z);
+            const double moved = lens_shift_px(r, z);
+            if (!std::isfinite(moved)) {
+                break;
+            }
+            const double change = std::fabs(moved - shift);
+            shift = moved;
+            ideal = seen - shift;
+            if (change < kProjectorConverged_px) {
+                break;
+            }
         }
         coordinate_px[u] = static_cast<float>(ideal);
     }
