@@ -118,6 +118,18 @@ Result<Processor::Outcome> Processor::process(const InputItem& item) {
     } else if (tracker_) {
         view.depth = &item.depth;
     } else {
+        // A new HandFrame says `camera`: forgetting to say otherwise would mean no events,
+        // silently.
+        if (item.hands.coordinates != CoordinateFrame::interaction) {
+            return Error{ErrorCode::malformed,
+                         "hands are in the camera frame; the source must give them in the "
+                         "interaction frame (to_interaction()) and say so in `coordinates`"};
+        }
+        if (item.hands.count > kMaxHands) {
+            return Error{ErrorCode::malformed,
+                         "count of hands is " + std::to_string(item.hands.count) +
+                             "; the source must give at most " + std::to_string(kMaxHands)};
+        }
         interaction_hands_ = item.hands;
         hand_from_joints_.complete(interaction_hands_);
         view.interaction_hands = &interaction_hands_;

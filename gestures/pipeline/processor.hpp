@@ -27,7 +27,8 @@ class Processor {
         PipelineView view;  ///< borrowed until the next call
         std::span<const GestureEvent> events;
     };
-    /// @errors malformed: the item's stamp is before the last one's
+    /// @errors malformed: the item's stamp is before the last one's, hands are too many or not in
+    ///         the interaction frame
     [[nodiscard]] Result<Outcome> process(const InputItem& item);
 
     /// Tells the state machines that time went on without an item; `now` is on the items' clock.

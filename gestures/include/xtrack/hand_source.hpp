@@ -21,8 +21,8 @@ class HandSource {
     HandSource& operator=(const HandSource&) = delete;
     virtual ~HandSource() = default;
 
-    /// Waits up to `timeout` and fills `hands` (interaction frame) when the status is ok; sets
-    /// `message` when lost or failed. Stamps never decrease.
+    /// Waits up to `timeout` and fills `hands` when the status is ok: interaction frame, and
+    /// `hands.coordinates` says so. Sets `message` when lost or failed. Stamps never decrease.
     virtual SourceStatus next(Duration timeout, HandFrame& hands, std::string& message) = 0;
 };
 

@@ -293,6 +293,32 @@ TEST(Session, ASourceThatThrowsHasFailed) {
     }
 }
 
+TEST(Session, HandsThatBreakTheirPromiseAreRefused) {
+    HandFrame camera;
+    auto session = callers_session(
+        [&](HandFrame& out) {
+            out = camera;
+            return SourceStatus::ok;
+        },
+        Pace::replay);
+    ASSERT_TRUE(session);
+    const auto in_camera_frame = session->run();
+    ASSERT_FALSE(in_camera_frame);
+    EXPECT_NE(in_camera_frame.error().message.find("to_interaction()"), std::string::npos);
+
+    session = callers_session(
+        [](HandFrame& out) {
+            out.coordinates = CoordinateFrame::interaction;
+            out.count = kMaxHands + 1;
+            return SourceStatus::ok;
+        },
+        Pace::replay);
+    ASSERT_TRUE(session);
+    const auto too_many = session->run();
+    ASSERT_FALSE(too_many);
+    EXPECT_NE(too_many.error().message.find("at most 2"), std::string::npos);
+}
+
 TEST(Session, ALostSourceIsAskedAgainAndNotAllTheTime) {
     for (const Pace pace : {Pace::replay, Pace::live}) {
         int asked = 0;
