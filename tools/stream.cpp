@@ -41,7 +41,10 @@ EventFormat format_of(const std::string& name) {
 }
 
 volatile std::sig_atomic_t signal_received = 0;
-void note_signal(int) { signal_received = 1; }
+void note_signal(int number) {
+    signal_received = 1;
+    std::signal(number, SIG_DFL);  // a second one ends at once, whatever the source hangs in
+}
 
 /// Ctrl-C and SIGTERM end the session in order: what is open is cancelled, statistics are printed.
 /// A handler may hardly do anything, so it leaves a note that a thread reads.
