@@ -8,6 +8,71 @@
 
 namespace xtrack::recognise {
 
+namespace {
+
+constexpr float kStraight = 0.5F;     // extension: half-way out
+constexpr float kShortestMm = 10.0F;  // palm to fingertips; less has no direction
+// Thumb and index tip of an adult come no farther apart (0.85 of a hand of 205 mm; 3.7 times the
+// circle in the palm, which is 0.23 of the length), and no faster (finger taps peak at 1 m/s, plus
+// three sigma of the difference of two apertures): more is another finger, or the wrist, taken for
+// one of them.
+constexpr float kSpanMm = 175.0F;
+constexpr float kSpanOfRadius = 3.7F;
+constexpr float kFastestMmps = 1500.0F;
+constexpr float kApertureNoiseMm = 12.0F;
+
+/// Where the hand points: from the wrist where joints say it, else to the straight fingers.
+Vec3f distal_of(const Hand& hand) {
+    Vec3f along = Vec3f::Zero();
+    const TrackedPoint& wrist = hand.joint(Joint::wrist);
+    if (wrist.valid && wrist.position_mm.allFinite()) {
+        along = hand.palm_mm - wrist.position_mm;
+    } else {
+        float n = 0.0F;
+        for (const Finger f : {Finger::index, Finger::middle, Finger::ring, Finger::little}) {
+            const TrackedPoint& tip = hand.fingertip(f);
+            if (tip.valid && tip.position_mm.allFinite() &&
+                hand.finger_extension[static_cast<std::size_t>(f)] >= kStraight) {
+                along += tip.position_mm - hand.palm_mm;
+                n += 1.0F;
+            }
+        }
+        along /= std::max(n, 1.0F);
+    }
+    return along.norm() >= kShortestMm ? Vec3f(along.normalized()) : Vec3f(Vec3f::Zero());
+}
+
+/// Straight line through points over time, least squares.
+class LineFit {
+ public:
+    explicit LineFit(const Vec3f& origin_mm) : origin_mm_(origin_mm) {}
+    void add(double t_s, const Vec3f& point_mm) {
+        const Vec3d p = (point_mm - origin_mm_).cast<double>();
+        ++count_;
+        sum_t_ += t_s;
+        sum_tt_ += t_s * t_s;
+        sum_p_ += p;
+        sum_tp_ += t_s * p;
+    }
+    [[nodiscard]] int count() const { return count_; }
+    /// mm/s; zero where there is one moment only.
+    [[nodiscard]] Vec3f slope() const {
+        const double spread = count_ * sum_tt_ - sum_t_ * sum_t_;
+        return spread > 0.0 ? Vec3f(((count_ * sum_tp_ - sum_t_ * sum_p_) / spread).cast<float>())
+                            : Vec3f(Vec3f::Zero());
+    }
+
+ private:
+    Vec3f origin_mm_;  // near the points, so that squares stay small
+    int count_ = 0;
+    double sum_t_ = 0.0;
+    double sum_tt_ = 0.0;
+    Vec3d sum_p_ = Vec3d::Zero();
+    Vec3d sum_tp_ = Vec3d::Zero();
+};
+
+}  // namespace
+
 float MotionSample::outer_extension() const noexcept {
     float sum = 0.0F;
     int known = 0;
@@ -36,7 +101,11 @@ MotionSample sample_of(const Hand& hand, Stamp stamp) noexcept {
     // normal.
     s.facing = palm_facing(hand);
     s.facing_signed = hand.chirality != Chirality::unknown;
-    if (std::isfinite(hand.pinch_aperture_mm)) {
+    s.from_joints = std::ranges::any_of(hand.joints, &TrackedPoint::valid);
+    const float span_mm = s.from_joints || hand.palm_radius_mm <= 0.0F
+                              ? kSpanMm
+                              : std::min(kSpanMm, kSpanOfRadius * hand.palm_radius_mm);
+    if (hand.pinch_aperture_mm <= span_mm) {
         s.aperture_mm = hand.pinch_aperture_mm;
     }
     s.hand_length_mm = hand_length_mm(hand);
@@ -44,6 +113,19 @@ MotionSample sample_of(const Hand& hand, Stamp stamp) noexcept {
     if (thumb.valid && middle.valid && thumb.position_mm.allFinite() &&
         middle.position_mm.allFinite()) {
         s.thumb_to_middle_mm = (thumb.position_mm - middle.position_mm).norm();
+    }
+    s.distal = distal_of(hand);
+    float farthest_mm = 0.0F;
+    for (const TrackedPoint& tip : hand.fingertips) {
+        if (!tip.valid || !tip.position_mm.allFinite()) {
+            continue;
+        }
+        const float mm = (tip.position_mm - hand.palm_mm).norm();
+        if (mm > farthest_mm) {
+            farthest_mm = mm;
+            s.far_tip_mm = tip.position_mm;
+            s.far_tip_known = true;
+        }
     }
     const TrackedPoint& knuckle = hand.joint(Joint::index_proximal);
     s.knuckle_known = knuckle.valid && knuckle.position_mm.allFinite() && s.index_tip_known &&
@@ -59,9 +141,25 @@ bool MotionHistory::add(const MotionSample& sample) noexcept {
     if (count_ > 0 && sample.stamp - newest().stamp < kMinSpacing) {
         return false;
     }
+    const bool believed = believable(sample);
     newest_ = count_ == 0 ? 0 : (newest_ + 1) % kCapacity;
     count_ = std::min(count_ + 1, kCapacity);
     samples_[newest_] = sample;
+    if (!believed) {
+        samples_[newest_].aperture_mm = -1.0F;
+    }
+    return true;
+}
+
+bool MotionHistory::believable(const MotionSample& sample) const noexcept {
+    for (std::size_t i = 0; i < count_; ++i) {
+        const MotionSample& before = at(i);
+        if (before.aperture_mm >= 0.0F) {
+            const auto since_s = static_cast<float>(to_seconds(sample.stamp - before.stamp));
+            return std::abs(sample.aperture_mm - before.aperture_mm) <=
+                   kApertureNoiseMm + kFastestMmps * since_s;
+        }
+    }
     return true;
 }
 
@@ -70,30 +168,29 @@ Vec3f MotionHistory::velocity(Duration window, std::size_t back) const noexcept 
         return Vec3f::Zero();
     }
     const Stamp end = at(back).stamp;
-    const Vec3f origin_mm = at(back).palm_mm;
-    double n = 0.0;
-    double sum_t = 0.0;
-    double sum_tt = 0.0;
-    Vec3d sum_p = Vec3d::Zero();
-    Vec3d sum_tp = Vec3d::Zero();
+    LineFit fit(at(back).palm_mm);
     for (std::size_t i = back; i < count_; ++i) {
         const MotionSample& s = at(i);
         if (i >= back + 2 && end - s.stamp > window) {
             break;
         }
-        const double t = -to_seconds(end - s.stamp);
-        const Vec3d p = (s.palm_mm - origin_mm).cast<double>();
-        n += 1.0;
-        sum_t += t;
-        sum_tt += t * t;
-        sum_p += p;
-        sum_tp += t * p;
+        fit.add(-to_seconds(end - s.stamp), s.palm_mm);
     }
-    const double spread = n * sum_tt - sum_t * sum_t;
-    if (spread <= 0.0) {
+    return fit.slope();
+}
+
+Vec3f MotionHistory::tip_velocity(Duration window) const noexcept {
+    constexpr int kEnough = 3;
+    if (count_ == 0) {
         return Vec3f::Zero();
     }
-    return ((n * sum_tp - sum_t * sum_p) / spread).cast<float>();
+    LineFit fit(newest().far_tip_mm);
+    for (std::size_t i = 0; i < count_within(window); ++i) {
+        if (at(i).far_tip_known) {
+            fit.add(-to_seconds(newest().stamp - at(i).stamp), at(i).far_tip_mm);
+        }
+    }
+    return fit.count() >= kEnough ? fit.slope() : velocity(window);
 }
 
 std::size_t MotionHistory::count_within(Duration age) const noexcept {

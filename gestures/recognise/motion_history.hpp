@@ -32,6 +32,12 @@ struct MotionSample {
     Vec3f index_from_knuckle_mm = Vec3f::Zero();
     bool knuckle_known = false;
     float thumb_to_middle_mm = -1.0F;  ///< tips; -1 = unknown
+    /// Joints are known, so that an extension of 0 means folded. A depth camera says 0 of a finger
+    /// that it cannot tell from its neighbour, too.
+    bool from_joints = false;
+    Vec3f distal = Vec3f::Zero();      ///< unit, along the hand to the fingertips; zero = unknown
+    Vec3f far_tip_mm = Vec3f::Zero();  ///< the fingertip that is farthest from the palm
+    bool far_tip_known = false;
 
     /// Mean extension of middle, ring and little finger; -1 where none is known.
     [[nodiscard]] float outer_extension() const noexcept;
@@ -46,6 +52,7 @@ class MotionHistory {
     static constexpr Duration kMinSpacing{3'500'000};
     static constexpr std::size_t kCapacity = 288;
 
+    /// An aperture that no hand can have after the one before is stored as unknown.
     /// @return false when the sample was left out: not later than the newest, or too close to it
     bool add(const MotionSample& sample) noexcept;
     void clear() noexcept { count_ = 0; }
@@ -61,10 +68,16 @@ class MotionHistory {
     /// the window holds one sample, the one before it is taken too. Zero with a single sample.
     [[nodiscard]] Vec3f velocity(Duration window, std::size_t back = 0) const noexcept;
 
+    /// The same for the fingertip farthest from the palm, where it is known in at least three
+    /// samples of the window; else the palm's.
+    [[nodiscard]] Vec3f tip_velocity(Duration window) const noexcept;
+
     /// How many samples are not older than `age` (counted from the newest).
     [[nodiscard]] std::size_t count_within(Duration age) const noexcept;
 
  private:
+    [[nodiscard]] bool believable(const MotionSample& sample) const noexcept;
+
     std::array<MotionSample, kCapacity> samples_{};
     std::size_t newest_ = 0;
     std::size_t count_ = 0;

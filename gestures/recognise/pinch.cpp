@@ -25,8 +25,12 @@ namespace {
 constexpr Duration kApertureWindow = std::chrono::milliseconds{40};
 // The hand before the fingers close, for comparison with the hand while they touch.
 constexpr Duration kPoseWindow = std::chrono::milliseconds{300};
-// An aperture that is not known for so long is a finger that is lost.
-constexpr Duration kApertureLost = std::chrono::milliseconds{120};
+// An aperture that is not known for so long is a finger that is lost. Longer than a hand's 120 ms:
+// fingertips that touch are hard to see apart, and the hand itself is in view.
+constexpr Duration kApertureLost = std::chrono::milliseconds{300};
+// The fingers must be seen on their way: in this share of the samples of pinch_approach_ms. Cameras
+// that see a hand well know 0.75 and more, a hand whose tips come and go 0.6 and less.
+constexpr double kApproachShare = 0.65;
 constexpr double kSmallestWayMm = 1.0;
 constexpr double kCapShare = 1.25;  // of pinch_close_mm: a hand length may be measured badly
 
@@ -87,6 +91,23 @@ Before look_back(const MotionHistory& history, Stamp open_at) {
         }
     }
     return before;
+}
+
+/// Share of samples before `closed_at` in which the aperture was known and could be believed.
+double approach_seen(const MotionHistory& history, Stamp closed_at, Duration window) {
+    int all = 0;
+    int seen = 0;
+    for (std::size_t i = 0; i < history.size(); ++i) {
+        const MotionSample& past = history.at(i);
+        if (closed_at - past.stamp > window) {
+            break;
+        }
+        if (past.stamp < closed_at) {
+            ++all;
+            seen += past.aperture_mm >= 0.0F ? 1 : 0;
+        }
+    }
+    return all > 0 ? static_cast<double>(seen) / all : 0.0;
 }
 
 double close_mm(const Context& c) {
@@ -311,6 +332,14 @@ Refusal PinchMachine::spoiler(const Context& c) const {
     const MotionSample& now = c.history.newest();
     const Before before = look_back(c.history, open_at_);
 
+    const double seen = approach_seen(c.history, closed_at_, from_ms(s.pinch_approach_ms));
+    if (seen < kApproachShare) {
+        return {"the approach was not seen", seen, kApproachShare};
+    }
+    // A fist of a camera's hand shows in all three; one that merely merges with its neighbour does
+    // not fold.
+    const int wanted = now.from_joints ? 1 : 3;
+    int folding = 0;
     for (const Finger finger : {Finger::middle, Finger::ring, Finger::little}) {
         const auto f = static_cast<std::size_t>(finger);
         const double was = before.extension[f].value();
@@ -318,7 +347,7 @@ Refusal PinchMachine::spoiler(const Context& c) const {
             continue;
         }
         const double folded = was - static_cast<double>(now.extension[f]);
-        if (folded > s.pinch_others_fold) {
+        if (folded > s.pinch_others_fold && ++folding == wanted) {
             return {"another finger folds with it", folded, s.pinch_others_fold};
         }
     }

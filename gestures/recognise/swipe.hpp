@@ -40,6 +40,8 @@ class SwipeMachine {
     void begin_stroke(const Context& c, Direction direction);
     void commit(const Context& c);
     void note_rest(const Context& c, const Vec3f& velocity);
+    [[nodiscard]] bool comes_in(const Context& c, const Vec3f& velocity);
+    [[nodiscard]] bool withdraws(const Vec3f& distal) const;
 
     State state_ = State::waiting;
     Stroke stroke_;
@@ -51,6 +53,8 @@ class SwipeMachine {
     Stroke last_;               ///< the one that committed
     Stamp committed_at_;
     float last_peak_mmps_ = 0.0F;
+    bool coming_ = false;                ///< the motion began while the hand was gated
+    Vec3f coming_mmps_ = Vec3f::Zero();  ///< how it moved when the gate opened; zero before
     Stamp drop_until_;  ///< samples before it are not looked at: the hand was gated
 };
 

@@ -145,7 +145,7 @@ TEST(Pinch, AFingertipThatIsLostIsALoss) {
     stage.play(Actor{{actor.moments.begin(), actor.moments.begin() + 4}}, 60);
     ASSERT_THAT(stage.story(), ElementsAre("pinch begin"));
     Noise noise(1);
-    for (int i = 1; i <= 10; ++i) {
+    for (int i = 1; i <= 25; ++i) {
         HandFrame frame;
         frame.stamp = Stamp::from_us(1'350'000 + 17'000 * i);
         frame.coordinates = CoordinateFrame::interaction;

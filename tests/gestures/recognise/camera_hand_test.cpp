@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Hands as a depth camera shows them: no joints, fingertips that come and go, a border.
+#include <functional>
+
+#include <gmock/gmock.h>
+
+#include "tests/gestures/recognise/play_hand.hpp"
+
+namespace xtrack::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+constexpr double kFps = 60.0;
+using Change = std::function<void(int frame, double ms, Hand& hand)>;
+
+/// Plays an actor after `change` has had its way with every hand.
+void play(Stage& stage, const Actor& actor, const Change& change) {
+    Noise noise(3);
+    const double to_ms = actor.moments.back().ms;
+    for (int i = 0; i * 1000.0 / kFps <= to_ms; ++i) {
+        const double ms = i * 1000.0 / kFps;
+        const At at = actor.where(ms);
+        HandFrame frame;
+        frame.stamp = Stamp{static_cast<std::int64_t>(ms * 1e6)};
+        frame.coordinates = CoordinateFrame::interaction;
+        if (at.seen) {
+            frame.hands[0] = hand_of(actor, at, noise);
+            frame.count = 1;
+            change(i, ms, frame.hands[0]);
+        }
+        stage.keep(stage.recogniser.push(frame));
+    }
+}
+
+/// Fingers stretched upward; the middle one reaches 100 mm over the palm's true place.
+void stretch_up(Hand& hand, const Vec3f& true_palm_mm) {
+    for (const Finger f : {Finger::index, Finger::middle, Finger::ring, Finger::little}) {
+        const auto k = static_cast<std::size_t>(f);
+        hand.fingertips[k].valid = true;
+        hand.fingertips[k].position_mm =
+            true_palm_mm +
+            Vec3f{20.0F * (static_cast<float>(k) - 2.0F), k == 2 ? 100.0F : 85.0F, 0};
+        hand.finger_extension[k] = 1.0F;
+    }
+}
+
+Vec3f at(float x, float y) { return {x, y, 400.0F}; }
+
+TEST(CameraHand, AFingerThatIsNotFoundIsNotFolded) {
+    Stage stage;
+    const Actor actor{
+        {{0, at(120, 0)}, {800, at(120, 0)}, {1200, at(-130, 0)}, {1800, at(-130, 0)}}};
+    play(stage, actor, [](int, double, Hand& hand) {
+        hand.finger_extension = {0.0F, 1.0F, 0.0F, 0.0F, 0.0F};
+    });
+    EXPECT_THAT(stage.story(), ElementsAre("swipe_left"));
+}
+
+TEST(CameraHand, TheWayInFromTheBorderIsNoSwipe) {
+    Actor actor{{{0, at(-260, 0)}, {600, at(-260, 0)}, {1000, at(20, 0)}, {1500, at(20, 0)}}};
+    const Change border = [](int, double ms, Hand& hand) { hand.touches_border = ms < 730; };
+    Stage stage;
+    play(stage, actor, border);
+    EXPECT_THAT(stage.story(), IsEmpty());
+    EXPECT_TRUE(stage.explained("swipe", "on its way in"));
+
+    actor.moments.push_back({1900, at(-230, 0)});
+    actor.moments.push_back({2300, at(-230, 0)});
+    Stage then;
+    play(then, actor, border);
+    EXPECT_THAT(then.story(), ElementsAre("swipe_left"));
+}
+
+TEST(CameraHand, AWayInThatTurnsIsOver) {
+    // Up from the border, then left without a rest.
+    const Actor actor{{{0, at(100, -200)},
+                       {400, at(100, -200)},
+                       {700, at(80, -40)},
+                       {1080, at(-190, -30)},
+                       {1600, at(-190, -30)}}};
+    Stage stage;
+    play(stage, actor, [](int, double ms, Hand& hand) { hand.touches_border = ms < 540; });
+    EXPECT_THAT(stage.story(), ElementsAre("swipe_left"));
+}
+
+TEST(CameraHand, LeavingDownwardIsNoSwipe) {
+    Stage stage;
+    // The palm is last seen in the middle of the movement, at its fastest.
+    Actor actor{{{0, at(0, 0)}, {800, at(0, 0)}, {2000, at(0, -480)}, {2500, at(0, -480)}}};
+    play(stage, actor, [](int, double ms, Hand& hand) {
+        stretch_up(hand, hand.palm_mm);
+        hand.confidence = ms < 1420 ? 1.0F : 0.0F;
+    });
+    EXPECT_THAT(stage.story(), IsEmpty());
+    EXPECT_TRUE(stage.explained("swipe", "may leave the view yet"));
+}
+
+TEST(CameraHand, ABorderThatEatsThePalmDoesNotStopTheHand) {
+    Stage stage;
+    const Actor actor{{{0, at(0, 0)}, {800, at(0, 0)}, {2000, at(0, -480)}, {2500, at(0, -480)}}};
+    play(stage, actor, [](int, double ms, Hand& hand) {
+        stretch_up(hand, hand.palm_mm);
+        // From here on the circle in what is left of the hand stays where it is.
+        hand.palm_mm.y() = std::max(hand.palm_mm.y(), -220.0F);
+        hand.confidence = ms < 1560 ? 1.0F : 0.0F;
+    });
+    EXPECT_THAT(stage.story(), IsEmpty());
+}
+
+TEST(CameraHand, AStrokeDownThatStopsInViewIsASwipe) {
+    Stage stage;
+    const Actor actor{
+        {{0, at(0, 100)}, {800, at(0, 100)}, {1250, at(0, -130)}, {1800, at(0, -130)}}};
+    play(stage, actor, [](int, double, Hand& hand) { stretch_up(hand, hand.palm_mm); });
+    EXPECT_THAT(stage.story(), ElementsAre("swipe_down"));
+    const GestureEvent* begin = stage.first(GestureType::swipe, EventPhase::begin);
+    ASSERT_NE(begin, nullptr);
+    EXPECT_LT(begin->sensor.us(), 1'300'000);  // within 50 ms of the stroke's end
+}
+
+/// Open at 75 mm, closed from 950 to 1500 ms, open again.
+const Actor kPinching{{{0, at(0, 0), 75},
+                       {700, at(0, 0), 75},
+                       {950, at(0, 0), 10},
+                       {1500, at(0, 0), 10},
+                       {1700, at(0, 0), 75},
+                       {2200, at(0, 0), 75}}};
+
+TEST(CameraHand, FingertipsMistakenForOthersDoNotOpenAPinch) {
+    Stage stage;
+    play(stage, kPinching, [](int frame, double, Hand& hand) {
+        hand.palm_radius_mm = 42.0F;  // a span of 155 mm
+        if (frame % 5 == 0) {
+            hand.pinch_aperture_mm = 187.0F;  // farther than a hand spans
+        } else if (frame % 9 == 0) {
+            hand.pinch_aperture_mm += 90.0F;  // faster than a finger moves
+        }
+    });
+    EXPECT_THAT(stage.story(), ElementsAre("pinch begin", "pinch end"));
+}
+
+TEST(CameraHand, APinchOutlivesFingertipsThatMergeForAMoment) {
+    Stage stage;
+    play(stage, kPinching, [](int, double ms, Hand& hand) {
+        if (ms > 1100 && ms < 1350) {
+            hand.pinch_aperture_mm = -1.0F;
+        }
+    });
+    EXPECT_THAT(stage.story(), ElementsAre("pinch begin", "pinch end"));
+}
+
+TEST(CameraHand, TipsThatComeAndGoAreNoPinch) {
+    Stage stage;
+    const Actor actor{{{0, at(0, 0), 100}, {2500, at(0, 0), 100}}};
+    play(stage, actor, [](int frame, double ms, Hand& hand) {
+        const bool closed = ms > 1500 || frame % 2 == 0;
+        hand.pinch_aperture_mm = closed ? 8.0F : 100.0F;
+    });
+    EXPECT_THAT(stage.story(), IsEmpty());
+}
+
+TEST(CameraHand, OneFingerThatMergesDoesNotSpoilAPinchAFistDoes) {
+    for (const bool fist : {false, true}) {
+        Stage stage;
+        play(stage, kPinching, [fist](int, double ms, Hand& hand) {
+            const float now = ms > 900 && ms < 1600 ? 0.0F : 1.0F;
+            const float others = fist ? now : 1.0F;
+            hand.finger_extension = {1.0F, 1.0F, others, others, now};
+        });
+        if (fist) {
+            EXPECT_THAT(stage.story(), IsEmpty());
+            EXPECT_TRUE(stage.explained("pinch", "another finger folds with it"));
+        } else {
+            EXPECT_THAT(stage.story(), ElementsAre("pinch begin", "pinch end"));
+        }
+    }
+}
+
+}  // namespace
+}  // namespace xtrack::test
