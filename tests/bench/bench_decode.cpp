@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Time of each stage and of the whole, 640 x 480, one core:
 //   bench_decode --benchmark_repetitions=10 --benchmark_min_time=0.1
+//       --benchmark_report_aggregates_only=true
 #include <benchmark/benchmark.h>
 
 #include <random>
 #include <vector>
 
 #include <xtrack/depth_decoder.hpp>
+#include <xtrack/hand_tracker.hpp>
+#include <xtrack/sim.hpp>
 
 #include "core/decode/decode_row.hpp"
 #include "core/depth/depth_row.hpp"
@@ -140,7 +143,89 @@ BENCHMARK_CAPTURE(whole, three_plus_two, kThreePlusTwo, MotionHandling::off)
 BENCHMARK_CAPTURE(whole, three_plus_two_following, kThreePlusTwo, MotionHandling::follow)
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(whole, dual, kDual, MotionHandling::off)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(whole, dual_following, kDual, MotionHandling::follow)
+    ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(whole, gray, kGray, MotionHandling::off)->Unit(benchmark::kMicrosecond);
+
+// One simulated camera frame, its light, noise and transport.
+void simulate(benchmark::State& state, const char* preset) {
+    auto settings = SimSettings::preset(preset);
+    if (!settings) {
+        state.SkipWithError(settings.error().message.c_str());
+        return;
+    }
+    settings->duration_s = 3600.0;
+    auto rig = SimulatedRig::create(*settings);
+    if (!rig) {
+        state.SkipWithError(rig.error().message.c_str());
+        return;
+    }
+    constexpr int kUntilTheHandIsIn = 90;
+    for (int n = 0; n < kUntilTheHandIsIn; ++n) {
+        benchmark::DoNotOptimize((*rig)->next({}));
+    }
+    for (auto _ : state) {
+        benchmark::DoNotOptimize((*rig)->next({}));
+    }
+}
+BENCHMARK_CAPTURE(simulate, ideal_60, "ideal-60")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(simulate, webcam_30, "webcam-30")->Unit(benchmark::kMillisecond);
+
+// Depth images of a simulated scene with a hand, frame after frame: motion, following and masks
+// included. `track` does the same and then finds the hand; only that part is timed.
+void scene(benchmark::State& state, const char* preset, bool track) {
+    auto settings = SimSettings::preset(preset);
+    if (!settings) {
+        state.SkipWithError(settings.error().message.c_str());
+        return;
+    }
+    settings->duration_s = 3600.0;
+    auto rig = SimulatedRig::create(*settings);
+    if (!rig) {
+        state.SkipWithError(rig.error().message.c_str());
+        return;
+    }
+    auto decoder =
+        DepthDecoder::create((*rig)->rig(), (*rig)->patterns(), (*rig)->rig().camera.size, {});
+    auto tracker = HandTracker::create((*rig)->rig(), (*rig)->rig().camera.size, {});
+    if (!decoder || !tracker) {
+        state.SkipWithError("decoder or tracker");
+        return;
+    }
+    constexpr int kUntilTheHandIsIn = 90;
+    const auto step = [&](bool timed) {
+        const auto item = (*rig)->next({});
+        if (timed && !track) {
+            state.ResumeTiming();
+        }
+        const DecodeStatus status = decoder->push(item.frame);
+        if (timed && track) {
+            state.ResumeTiming();
+        }
+        if (track && status.state == DecodeState::depth_ready) {
+            benchmark::DoNotOptimize(tracker->track(decoder->depth()));
+        }
+    };
+    for (int n = 0; n < kUntilTheHandIsIn; ++n) {
+        step(false);
+    }
+    for (auto _ : state) {
+        state.PauseTiming();
+        step(true);
+    }
+    state.SetLabel(DepthDecoder::instruction_set());
+}
+// The simulator takes far longer than what is measured, so the frames are counted.
+constexpr int kSceneFrames = 40;
+BENCHMARK_CAPTURE(scene, decode_ideal_60, "ideal-60", false)
+    ->Iterations(kSceneFrames)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(scene, decode_webcam_30, "webcam-30", false)
+    ->Iterations(kSceneFrames)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(scene, track_ideal_60, "ideal-60", true)
+    ->Iterations(kSceneFrames)
+    ->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace xtrack
