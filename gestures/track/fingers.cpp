@@ -30,6 +30,17 @@ constexpr float kCutPixels = 2.5F;
 /// No finger points this far toward the arm: cosine of the angle between them.
 constexpr float kArmSide = 0.2F;
 constexpr int kSmoothRounds = 2;
+/// The pad of a finger is this far from its distal end.
+constexpr float kPadBelowMm = 11.0F;
+/// Two fingers that have met, or lie together, are no wider than this, mm.
+constexpr float kWideTipMaxMm = 60.0F;
+constexpr float kTwoPi = 6.2831853F;
+
+std::size_t reach_bin(const Vec3f& v) {
+    const float turn = std::atan2(v.y(), v.x()) / kTwoPi + 0.5F;
+    const auto bin = static_cast<std::size_t>(turn * static_cast<float>(kReachBins));
+    return std::min(bin, kReachBins - 1);
+}
 
 }  // namespace
 
@@ -55,6 +66,7 @@ void FingerReader::read(const segment::Grid& grid, std::span<const std::uint8_t>
     }
     measure_profile(grid, labels, region);
     find_tips(region, tip_prominence_mm, out);
+    measure_reach(region, out);
 
     const float beyond = kFingersBeyondRadii * region.palm_radius_mm;
     for (int y = region.y_begin; y < region.y_end; ++y) {
@@ -163,6 +175,9 @@ void FingerReader::find_tips(const HandRegion& region, float tip_prominence_mm,
             ++after;
         }
         const float width = (point(k - before) - point(k + after)).norm();
+        if (width > kTipWidthMaxMm && width < kWideTipMaxMm && out.wide_count < kTipsMax) {
+            out.wide_mm[out.wide_count++] = point(k);
+        }
         if (width > kTipWidthMaxMm || width < kTipWidthMinMm || out.count >= kTipsMax) {
             continue;
         }
@@ -175,7 +190,29 @@ void FingerReader::find_tips(const HandRegion& region, float tip_prominence_mm,
         const Vec3f outward = (point(k) - region.palm_mm).normalized();
         const float half = 0.5F * region.palm_radius_mm / std::max(1.0F, region.palm_radius_px);
         tip.position_mm = point(k) + half * outward;
+        const auto pad = [&](int step) {
+            int m = step;
+            while (std::abs(m) < n && (point(k + m) - point(k)).norm() < kPadBelowMm) {
+                m += step;
+            }
+            return point(k + m);
+        };
+        tip.pad_before_mm = pad(-1);
+        tip.pad_after_mm = pad(1);
     }
+}
+
+void FingerReader::measure_reach(const HandRegion& region, FingerReading& out) const {
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+        float& reach = out.reach_mm[reach_bin(points_[k] - region.palm_mm)];
+        reach = std::max(reach, distance_[k]);
+    }
+}
+
+float FingerReading::reach_toward(const Vec3f& from_palm) const {
+    const std::size_t bin = reach_bin(from_palm);
+    return std::max(reach_mm[bin], std::max(reach_mm[(bin + 1) % kReachBins],
+                                            reach_mm[(bin + kReachBins - 1) % kReachBins]));
 }
 
 void FingerReader::find_ring(const segment::Grid& grid, std::span<const std::uint8_t> labels,

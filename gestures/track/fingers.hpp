@@ -22,10 +22,13 @@ struct Tip {
     float prominence_mm = 0.0F;  ///< above the higher of its two valleys
     float width_mm = 0.0F;       ///< of the finger, a little below the tip
     float angle_rad = 0.0F;  ///< round the palm from the finger direction, clockwise in the image
+    Vec3f pad_before_mm = Vec3f::Zero();  ///< skin a pad's length below the tip, along the outline
+    Vec3f pad_after_mm = Vec3f::Zero();   ///< the same on its other side, clockwise of it
     Finger finger = Finger::index;
 };
 
 inline constexpr std::size_t kTipsMax = 8;
+inline constexpr std::size_t kReachBins = 60;
 
 /// What one frame says about a hand's fingers.
 struct FingerReading {
@@ -39,6 +42,14 @@ struct FingerReading {
     float curl_mm = 0.0F;  ///< mean height of the tips above the palm's plane, toward the camera
     bool ring = false;     ///< thumb and index close a ring round a hole
     Vec3f ring_tip_mm = Vec3f::Zero();  ///< where it closes
+    /// Ends too wide for one finger: two that lie together, or have met.
+    std::array<Vec3f, kTipsMax> wide_mm{};
+    std::size_t wide_count = 0;
+    /// How far the hand goes from the palm's centre, mm, by direction in the image plane.
+    std::array<float, kReachBins> reach_mm{};
+
+    /// The same for the direction of a vector from the palm's centre.
+    [[nodiscard]] float reach_toward(const Vec3f& from_palm) const;
 };
 
 /// Reads fingertips off a hand's outline: peaks of the distance from the palm's centre that stand
@@ -59,6 +70,7 @@ class FingerReader {
     void find_tips(const HandRegion& region, float tip_prominence_mm, FingerReading& out) const;
     void find_ring(const segment::Grid& grid, std::span<const std::uint8_t> labels,
                    const HandRegion& region, FingerReading& out);
+    void measure_reach(const HandRegion& region, FingerReading& out) const;
 
     Contour contour_;
     std::vector<Vec3f> points_;    ///< of the contour, with the depth of the skin beside them

@@ -28,8 +28,6 @@ constexpr float kOpenArea = 1.9F;
 // Pinch value: 0 at this aperture, 1 at that, mm.
 constexpr float kPinchOpenMm = 60.0F;
 constexpr float kPinchClosedMm = 15.0F;
-/// Skin of two touching fingertips, centre to centre: what "closed" measures, mm.
-constexpr float kTouchMm = 8.0F;
 
 // Chirality. Evidence is added a second of clear sight, and forgotten at the rate of the limit.
 constexpr float kSidePerSecond = 12.0F;
@@ -118,7 +116,7 @@ Vec3f HandTrack::fit_velocity(Duration window) const {
 }
 
 void HandTrack::update(Stamp stamp, const HandRegion& region, const Vec3f& normal,
-                       const FingerReading& fingers, const TrackerSettings& settings, Hand& hand) {
+                       FingerReading& fingers, const TrackerSettings& settings, Hand& hand) {
     const bool fresh = samples_ == 0;
     const float seconds = fresh ? 0.0F : static_cast<float>(to_seconds(stamp - last_seen_));
     if (!fresh && stamp - last_seen_ > kPathGapMax) {
@@ -147,40 +145,41 @@ void HandTrack::update(Stamp stamp, const HandRegion& region, const Vec3f& norma
     hand.palm_radius_mm = region.palm_radius_mm;
     hand.palm_normal = normal;
     hand.palm_velocity_mmps = velocity_mmps_;
-    fill_fingers(region, fingers, hand);
-    measure_pinch(fingers, hand);
+    const int side = thumb_side();
     weigh_chirality(region, fingers, seconds, hand);
+    finger_tracks_.update(stamp, region, side, fingers);
+    fill_fingers(region, fingers, hand);
+    fill_pinch(hand);
 }
 
 void HandTrack::fill_fingers(const HandRegion& region, const FingerReading& fingers, Hand& hand) {
     hand.finger_extension.fill(0.0F);
     hand.extended_fingers = 0;
-    for (std::size_t k = 0; k < fingers.count; ++k) {
-        const Tip& tip = fingers.tips[k];
-        const auto f = static_cast<std::size_t>(tip.finger);
-        const bool thumb = tip.finger == Finger::thumb;
-        const float radii = tip.distance_mm / region.palm_radius_mm;
-        const float extension = thumb ? ramp(radii, kThumbFoldedRadii, kThumbStraightRadii)
-                                      : ramp(radii, kFoldedRadii, kStraightRadii);
-        hand.fingertips[f] = {tip.position_mm, true};
+    const float r = region.palm_radius_mm;
+    for (std::size_t f = 0; f < kFingerCount; ++f) {
+        const FingerState& finger = finger_tracks_.finger(static_cast<Finger>(f));
+        if (!finger.known) {
+            continue;
+        }
+        // A finger that has no tip of its own in this frame lies beside another: the outline still
+        // reaches out where it was, or it is folded.
+        const float reach =
+            finger.fresh ? finger.tip_mm.norm()
+                         : std::min(finger.tip_mm.norm(), fingers.reach_toward(finger.tip_mm));
+        const float extension = f == static_cast<std::size_t>(Finger::thumb)
+                                    ? ramp(reach / r, kThumbFoldedRadii, kThumbStraightRadii)
+                                    : ramp(reach / r, kFoldedRadii, kStraightRadii);
         hand.finger_extension[f] = extension;
         hand.extended_fingers += extension >= kExtended ? 1 : 0;
+        if (finger.fresh) {
+            hand.fingertips[f] = {region.palm_mm + finger.tip_mm, true};
+        }
     }
-    const float r2 = region.palm_radius_mm * region.palm_radius_mm;
-    hand.grab_value = 1.0F - ramp(fingers.finger_area_mm2 / r2, kFistArea, kOpenArea);
+    hand.grab_value = 1.0F - ramp(fingers.finger_area_mm2 / (r * r), kFistArea, kOpenArea);
 }
 
-void HandTrack::measure_pinch(const FingerReading& fingers, Hand& hand) {
-    TrackedPoint& thumb = hand.fingertip(Finger::thumb);
-    TrackedPoint& index = hand.fingertip(Finger::index);
-    if (thumb.valid && index.valid) {
-        hand.pinch_aperture_mm = (thumb.position_mm - index.position_mm).norm();
-    } else if (fingers.ring) {
-        // Both tips are where the ring closes; the outline cannot tell them apart.
-        hand.pinch_aperture_mm = kTouchMm;
-        thumb = {fingers.ring_tip_mm, true};
-        index = {fingers.ring_tip_mm, true};
-    }
+void HandTrack::fill_pinch(Hand& hand) const {
+    hand.pinch_aperture_mm = finger_tracks_.aperture_mm();
     if (hand.pinch_aperture_mm >= 0.0F) {
         hand.pinch_value = ramp(-hand.pinch_aperture_mm, -kPinchOpenMm, -kPinchClosedMm);
     }
@@ -192,7 +191,8 @@ void HandTrack::weigh_chirality(const HandRegion& region, const FingerReading& f
     constexpr float kFirstFrameS = 1.0F / 30.0F;
     constexpr float kStepMaxS = 0.1F;
     const float t = seconds > 0.0F ? std::min(seconds, kStepMaxS) : kFirstFrameS;
-    if (fingers.thumb_side != 0) {
+    // Thumb and index together show no thumb: what then sticks out to a side is none.
+    if (fingers.thumb_side != 0 && !finger_tracks_.touching() && !fingers.ring) {
         const float turn = static_cast<float>(fingers.thumb_side) * fingers.thumb_score;
         side_log_odds_ =
             std::clamp(side_log_odds_ + kSidePerSecond * t * turn, -kSideLimit, kSideLimit);

@@ -8,6 +8,7 @@
 #include <xtrack/hand_region.hpp>
 #include <xtrack/tracker_settings.hpp>
 
+#include "gestures/track/finger_tracks.hpp"
 #include "gestures/track/fingers.hpp"
 
 namespace xtrack::track {
@@ -28,9 +29,9 @@ class HandTrack {
     /// +1 or -1 when the thumb's side is known, else 0.
     [[nodiscard]] int thumb_side() const noexcept;
 
-    /// Takes one frame's reading and gives the hand.
-    void update(Stamp stamp, const HandRegion& region, const Vec3f& normal,
-                const FingerReading& fingers, const TrackerSettings& settings, Hand& hand);
+    /// Takes one frame's reading, names its tips, and gives the hand.
+    void update(Stamp stamp, const HandRegion& region, const Vec3f& normal, FingerReading& fingers,
+                const TrackerSettings& settings, Hand& hand);
 
  private:
     struct Sample {
@@ -42,12 +43,13 @@ class HandTrack {
     void weigh_chirality(const HandRegion& region, const FingerReading& fingers, float seconds,
                          Hand& hand);
     void fill_fingers(const HandRegion& region, const FingerReading& fingers, Hand& hand);
-    void measure_pinch(const FingerReading& fingers, Hand& hand);
+    void fill_pinch(Hand& hand) const;
 
     /// 200 ms at 240 frames a second.
     static constexpr std::size_t kHistory = 48;
 
     int id_ = 0;
+    FingerTracks finger_tracks_;
     Stamp last_seen_;
     std::array<Sample, kHistory> history_{};
     std::size_t samples_ = 0;

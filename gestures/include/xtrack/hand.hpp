@@ -75,7 +75,7 @@ struct Hand {
     std::array<float, kFingerCount> finger_extension{-1.0F, -1.0F, -1.0F, -1.0F, -1.0F};
     int extended_fingers = -1;  ///< how many fingers stand out; -1 = unknown
 
-    float pinch_aperture_mm = -1.0F;  ///< thumb tip to index tip in 3-D; -1 = unknown
+    float pinch_aperture_mm = -1.0F;  ///< pad of the thumb to pad of the index, 3-D; -1 = unknown
     float pinch_value = 0.0F;         ///< 0 open (60 mm) .. 1 closed (15 mm); 0 when not known
     float grab_value = 0.0F;          ///< 0 open .. 1 fist
 
