@@ -76,40 +76,55 @@ void Grid::create(const Rig& rig, Size size) {
     }
 }
 
+namespace {
+
+struct LoadRow {
+    const DepthFrame& depth;
+    int low = 0;
+    int band = 0;
+    float unit = 0.0F;
+};
+
+/// One row of the grid. `kScale` 0: the scale is not known to the compiler.
+template <int kScale>
+void load_row(const LoadRow& from, int any_scale, int y, int width, float* out) {
+    constexpr int kNone = 1 << 20;
+    const int scale = kScale > 0 ? kScale : any_scale;
+    const std::uint16_t* const first = from.depth.depth.row(y * scale);
+    const std::ptrdiff_t stride = from.depth.depth.row(y * scale + (scale > 1 ? 1 : 0)) - first;
+    for (int x = 0; x < width; ++x) {
+        int nearest = kNone;
+        for (int dy = 0; dy < scale; ++dy) {
+            for (int dx = 0; dx < scale; ++dx) {
+                const int d = first[dy * stride + x * scale + dx];
+                nearest = std::min(nearest, d >= from.low ? d : kNone);
+            }
+        }
+        int sum = 0;
+        int count = 0;
+        for (int dy = 0; dy < scale; ++dy) {
+            for (int dx = 0; dx < scale; ++dx) {
+                const int d = first[dy * stride + x * scale + dx];
+                const int same = d >= nearest && d <= nearest + from.band ? 1 : 0;
+                sum += same * d;
+                count += same;
+            }
+        }
+        out[x] = from.unit * static_cast<float>(sum) / static_cast<float>(std::max(count, 1));
+    }
+}
+
+}  // namespace
+
 void Grid::load(const DepthFrame& depth, float near_mm) {
     const auto unit = static_cast<float>(depth.depth_unit_mm);
     const float lowest = std::max(1.0F, std::ceil(near_mm / unit));
-    const auto low = static_cast<int>(lowest);
-    const auto band = static_cast<int>(kBlockBandMm / unit);
-    constexpr int kNone = 1 << 20;
+    const LoadRow from{depth, static_cast<int>(lowest), static_cast<int>(kBlockBandMm / unit),
+                       unit};
+    // Written out for the usual scales, so that blocks are unrolled and several go at once.
+    const auto row = scale == 1 ? &load_row<1> : (scale == 2 ? &load_row<2> : &load_row<0>);
     for (int y = 0; y < inner_height; ++y) {
-        float* out = z.data() + index(0, y);
-        for (int x = 0; x < inner_width; ++x) {
-            int nearest = kNone;
-            for (int dy = 0; dy < scale; ++dy) {
-                const std::uint16_t* in = depth.depth.row(y * scale + dy) + x * scale;
-                for (int dx = 0; dx < scale; ++dx) {
-                    const int d = in[dx];
-                    nearest = (d >= low && d < nearest) ? d : nearest;
-                }
-            }
-            if (nearest == kNone) {
-                out[x] = 0.0F;
-                continue;
-            }
-            int sum = 0;
-            int count = 0;
-            for (int dy = 0; dy < scale; ++dy) {
-                const std::uint16_t* in = depth.depth.row(y * scale + dy) + x * scale;
-                for (int dx = 0; dx < scale; ++dx) {
-                    const int d = in[dx];
-                    const bool same = d >= nearest && d <= nearest + band;
-                    sum += same ? d : 0;
-                    count += same ? 1 : 0;
-                }
-            }
-            out[x] = unit * static_cast<float>(sum) / static_cast<float>(count);
-        }
+        row(from, scale, y, inner_width, z.data() + index(0, y));
     }
     drop_lone();
     close_pinholes();
