@@ -78,6 +78,11 @@ Duration SimulatedRig::duration() const {
         std::llround(static_cast<double>(impl_->frames) * 1e9 / impl_->settings.camera.frame_hz)};
 }
 
+Duration SimulatedRig::delivery_delay() const {
+    const SimCamera& camera = impl_->settings.camera;
+    return Duration{std::llround((camera.exposure_s + camera.readout_s) / 2.0 * 1e9)};
+}
+
 FrameSource::Item SimulatedRig::next(Duration /*timeout*/) {
     Impl& s = *impl_;
     Item item;

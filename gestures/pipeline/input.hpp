@@ -32,6 +32,10 @@ class Input {
     explicit Input(std::unique_ptr<HandSource> source) : hands_(std::move(source)) {}
 
     /// Sources may be a caller's own: one that throws or breaks its promise has failed.
+    [[nodiscard]] Duration delivery_delay() const {
+        return frames_ ? frames_->delivery_delay() : Duration::zero();
+    }
+
     void read(Duration timeout, InputItem& item) noexcept {
         try {
             ask(timeout, item);

@@ -94,6 +94,9 @@ Result<void> Processor::track(const DepthFrame& depth, PipelineView& view) {
     }
     const auto begin = Wall::now();
     view.camera_hands = &tracker_->track(depth);
+    if (tracker_->status() != TrackStatus::ok) {
+        ++rejected_;
+    }
     interaction_hands_ = to_interaction(*view.camera_hands, interaction_from_camera_);
     track_time_.add(Wall::now() - begin);
     view.tracker = &*tracker_;

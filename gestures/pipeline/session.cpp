@@ -39,7 +39,10 @@ TimeStatistics statistics_of(const TimeHistogram& h) {
 
 struct Session::Impl {
     Impl(Input in, Processor proc, Pace pace_in)
-        : input(std::move(in)), processor(std::move(proc)), pace(pace_in), clock(pace_in) {}
+        : input(std::move(in)),
+          processor(std::move(proc)),
+          pace(pace_in),
+          clock(pace_in, input.delivery_delay()) {}
 
     /// The next item if one is due within `timeout`, read in the calling thread.
     bool read_due(Duration timeout);
@@ -155,7 +158,7 @@ Result<StepStatus> Session::Impl::take() {
         case SourceStatus::end: return finish(StepStatus::end);
         case SourceStatus::failed:
             (void)finish(StepStatus::stopped);
-            return Error{ErrorCode::device_lost, item.message};
+            return Error{ErrorCode::io, item.message};
     }
     const auto begin = Wall::now();
     auto outcome = processor.process(item);

@@ -14,7 +14,9 @@ class StreamClock {
  public:
     using Wall = std::chrono::steady_clock;
 
-    explicit StreamClock(Pace pace) : pace_(pace) {}
+    /// @param delivery_delay from an item's stamp to the moment it can be had
+    explicit StreamClock(Pace pace, Duration delivery_delay = Duration::zero())
+        : pace_(pace), delivery_delay_(delivery_delay) {}
 
     /// Tells the first stamp of the stream; later calls change nothing.
     void begin(Stamp first) {
@@ -26,7 +28,8 @@ class StreamClock {
 
     /// When an item with this stamp may be processed. @pre begin()
     [[nodiscard]] Wall::time_point due(Stamp stamp) const {
-        return pace_ == Pace::own_pace ? start_ + (stamp - *first_) : Wall::time_point::min();
+        return pace_ == Pace::own_pace ? start_ + (stamp - *first_) + delivery_delay_
+                                       : Wall::time_point::min();
     }
 
     /// Now, on the stream's clock; `newest` is the newest stamp seen, which is all the time there
@@ -44,6 +47,7 @@ class StreamClock {
 
  private:
     Pace pace_;
+    Duration delivery_delay_;
     std::optional<Stamp> first_;
     Wall::time_point start_;
 };

@@ -189,6 +189,8 @@ class SimulatedRig final : public FrameSource {
     [[nodiscard]] const PatternSequence& patterns() const override;
     /// The next frame, or `end`. Never waits; no heap allocation once frames come back to the pool.
     Item next(Duration timeout) override;
+    /// Half the exposure and half the readout.
+    [[nodiscard]] Duration delivery_delay() const override;
 
     /// Ground truth of the frame that next() gave last; rendered when asked.
     /// @pre next() gave a frame

@@ -41,6 +41,10 @@ class FrameSource {
     [[nodiscard]] virtual const PatternSequence& patterns() const = 0;
     /// Waits up to `timeout` for the next frame. Stamps never decrease.
     virtual Item next(Duration timeout) = 0;
+    /// How long after its stamp a real camera hands a frame over: the rest of the exposure and of
+    /// the readout. Whoever plays a source at its own pace waits so long. Zero where it is not
+    /// known.
+    [[nodiscard]] virtual Duration delivery_delay() const { return Duration::zero(); }
 };
 
 /// Depth images from any depth camera, a recording, or nothing.

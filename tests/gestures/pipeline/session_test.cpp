@@ -26,8 +26,9 @@ constexpr double kStroke_s = 0.35;
 /// A right hand held up, flat side to the left, that rests, strokes to the left and rests again.
 class SwipingHand final : public HandSource {
  public:
-    explicit SwipingHand(int frames, SourceStatus after = SourceStatus::end)
-        : frames_(frames), after_(after) {}
+    explicit SwipingHand(int frames, SourceStatus after = SourceStatus::end,
+                         Duration spacing = kFrame)
+        : frames_(frames), after_(after), spacing_(spacing) {}
 
     SourceStatus next(Duration timeout, HandFrame& out, std::string& message) override {
         if (next_ == frames_) {
@@ -40,7 +41,7 @@ class SwipingHand final : public HandSource {
         const double t = to_seconds(kFrame) * next_;
         const double moved = std::clamp(t - kRest_s, 0.0, kStroke_s);
         out = HandFrame{};
-        out.stamp = Stamp{} + kFrame * next_++;
+        out.stamp = Stamp{} + spacing_ * next_++;
         out.coordinates = CoordinateFrame::interaction;
         out.count = 1;
         Hand& hand = out.hands[0];
@@ -72,6 +73,7 @@ class SwipingHand final : public HandSource {
  private:
     int frames_;
     SourceStatus after_;
+    Duration spacing_;
     int next_ = 0;
 };
 
@@ -194,17 +196,27 @@ TEST(Session, OwnPaceTakesAsLongAsTheRecording) {
 }
 
 TEST(Session, AStepThatIsNotDueWaitsNoLongerThanAsked) {
-    auto session = swiping_session(Pace::own_pace, 3);
+    SessionOptions options;
+    options.pace = Pace::own_pace;
+    auto session = Session::create(
+        std::unique_ptr<HandSource>(new SwipingHand(3, SourceStatus::end, 1h)), options);
     ASSERT_TRUE(session);
     auto status = session->step();
     ASSERT_TRUE(status);
     EXPECT_EQ(*status, StepStatus::processed);
-    status = session->step();
+    status = session->step(1ms);
     ASSERT_TRUE(status);
     EXPECT_EQ(*status, StepStatus::waiting);
-    status = session->step(1s);
-    ASSERT_TRUE(status);
-    EXPECT_EQ(*status, StepStatus::processed);
+}
+
+TEST(Session, AStepWaitsForWhatIsDueSoon) {
+    auto session = swiping_session(Pace::own_pace, 3);
+    ASSERT_TRUE(session);
+    for (int i = 0; i < 3; ++i) {
+        const auto status = session->step(1s);
+        ASSERT_TRUE(status);
+        EXPECT_EQ(*status, StepStatus::processed);
+    }
 }
 
 TEST(Session, ACallbackThatThrowsEndsItWithAnError) {

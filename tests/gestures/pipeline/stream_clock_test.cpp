@@ -27,6 +27,14 @@ TEST(StreamClock, OwnPaceCountsFromTheFirstStamp) {
     EXPECT_LT(clock.now(first), first + std::chrono::seconds(10));
 }
 
+TEST(StreamClock, OwnPaceWaitsUntilACameraWouldHaveDelivered) {
+    StreamClock clock(Pace::own_pace, std::chrono::seconds(20));
+    clock.begin({});
+    const auto after = StreamClock::Wall::now();
+    EXPECT_GT(clock.due({}), after);
+    EXPECT_LE(clock.due({}), after + std::chrono::seconds(20));
+}
+
 TEST(StreamClock, LiveIsTheMonotonicClock) {
     const StreamClock clock(Pace::live);
     const auto wall = StreamClock::Wall::now().time_since_epoch();
