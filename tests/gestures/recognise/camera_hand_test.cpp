@@ -51,8 +51,8 @@ Vec3f at(float x, float y) { return {x, y, 400.0F}; }
 
 TEST(CameraHand, AFingerThatIsNotFoundIsNotFolded) {
     Stage stage;
-    const Actor actor{
-        {{0, at(120, 0)}, {800, at(120, 0)}, {1200, at(-130, 0)}, {1800, at(-130, 0)}}};
+    // A hand that points would have to go 150 mm.
+    const Actor actor{{{0, at(70, 0)}, {800, at(70, 0)}, {1100, at(-70, 0)}, {1700, at(-70, 0)}}};
     play(stage, actor, [](int, double, Hand& hand) {
         hand.finger_extension = {0.0F, 1.0F, 0.0F, 0.0F, 0.0F};
     });
