@@ -15,7 +15,8 @@ std::atomic<long> g_allocations{0};
 
 }  // namespace
 
-// Counts every allocation of this program: the pool must make none once it stands.
+// Counts every allocation of this program: the pool must make none once it stands. Not inlined, or
+// GCC 12 sees free() given what operator new returned, and not that both are these.
 void* operator new(std::size_t size) {
     ++g_allocations;
     if (void* p = std::malloc(size)) {
@@ -23,8 +24,8 @@ void* operator new(std::size_t size) {
     }
     throw std::bad_alloc();
 }
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 #ifdef __GLIBC__
 // Pixels are aligned, and come this way.
 void* operator new(std::size_t size, std::align_val_t alignment) {
@@ -35,8 +36,10 @@ void* operator new(std::size_t size, std::align_val_t alignment) {
     }
     throw std::bad_alloc();
 }
-void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
+    std::free(p);
+}
 #endif
 
 namespace xtrack::base {
