@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include <xtrack/scoring.hpp>
 
 #include "tools/commands.hpp"
+#include "tools/progress.hpp"
 #include "tools/stream.hpp"
 
 namespace xtrack::tools {
@@ -68,7 +70,32 @@ struct Recording {
     std::size_t labels = 0;
     double seconds = 0.0;
     std::vector<JudgedEvent> events;
+    std::vector<std::string> causes;  ///< of each event; empty where it is right
 };
+
+bool is_false(Verdict v) {
+    return v == Verdict::wrong_hand || v == Verdict::overlap || v == Verdict::stray;
+}
+
+/// What part of a gesture a false event was taken from, where a label's window holds the way there
+/// and back too: before the event that is right, after it, or neither can be said.
+std::string cause_of(const JudgedEvent& event, const std::vector<JudgedEvent>& all,
+                     const std::vector<GestureLabel>& labels) {
+    if (!is_false(event.verdict)) {
+        return {};
+    }
+    const auto inside = [](const JudgedEvent& e, const GestureLabel& label) {
+        return e.event.sensor >= label.start && e.event.sensor <= label.end;
+    };
+    for (const GestureLabel& label : labels) {
+        for (const JudgedEvent& right : all) {
+            if (right.verdict == Verdict::correct && inside(event, label) && inside(right, label)) {
+                return event.event.sensor < right.event.sensor ? "approach" : "return";
+            }
+        }
+    }
+    return "other";
+}
 
 std::string name_of_folder(const std::string& folder) {
     const std::filesystem::path path = std::filesystem::path(folder).lexically_normal();
@@ -95,6 +122,9 @@ Result<Recording> score(const std::string& folder, const Player& play, GestureSc
     r.labels = labels.size();
     r.seconds = to_seconds(played->length);
     r.events = scorer.add(played->events, labels, played->length);
+    for (const JudgedEvent& e : r.events) {
+        r.causes.push_back(cause_of(e, r.events, labels));
+    }
     return r;
 }
 
@@ -121,10 +151,12 @@ void print_row(const std::string& name, const GestureScore& s) {
 void print_text(const std::vector<Recording>& recordings, const GestureScorer& scorer) {
     for (const Recording& r : recordings) {
         fmt::print("{} ({:.1f} s, {} labels)\n", r.name, r.seconds, r.labels);
-        for (const JudgedEvent& e : r.events) {
-            fmt::print("  {:>9.3f} s  {:<12} {:<10} {}\n",
+        for (std::size_t i = 0; i < r.events.size(); ++i) {
+            const JudgedEvent& e = r.events[i];
+            fmt::print("  {:>9.3f} s  {:<12} {:<10} {:<9} {}\n",
                        static_cast<double>(e.event.sensor.us()) * 1e-6, name_of(e.event),
-                       to_string(e.verdict), e.during.empty() ? "" : "during " + e.during);
+                       to_string(e.verdict), r.causes[i],
+                       e.during.empty() ? "" : "during " + e.during);
         }
     }
     fmt::print("\n{:<12} {:>7} {:>19} {:>5} {:>19} {:>19} {:>5} {:>5} {:>12} {:>12} {:>13}\n",
@@ -183,10 +215,12 @@ void print_json(const std::vector<Recording>& recordings, const GestureScorer& s
     out["recordings"] = json::array();
     for (const Recording& r : recordings) {
         json events = json::array();
-        for (const JudgedEvent& e : r.events) {
+        for (std::size_t i = 0; i < r.events.size(); ++i) {
+            const JudgedEvent& e = r.events[i];
             events.push_back({{"t_us", e.event.sensor.us()},
                               {"gesture", name_of(e.event)},
                               {"verdict", to_string(e.verdict)},
+                              {"cause", r.causes[i].empty() ? json(nullptr) : json(r.causes[i])},
                               {"during", e.during.empty() ? json(nullptr) : json(e.during)}});
         }
         out["recordings"].push_back({{"name", r.name},
@@ -214,13 +248,17 @@ int evaluate(const EvalOptions& options) {
     GestureScorer scorer(session.gestures);
     const Player play = session_player(session);
     std::vector<Recording> recordings;
+    std::optional<Progress> progress(std::in_place, "evaluating", options.recordings.size());
     for (const std::string& folder : options.recordings) {
         auto scored = score(folder, play, scorer);
         if (!scored) {
+            progress.reset();
             return fail(scored.error());
         }
         recordings.push_back(std::move(*scored));
+        progress->step();
     }
+    progress.reset();  // the bar goes before the figures come
     options.json ? print_json(recordings, scorer) : print_text(recordings, scorer);
     return 0;
 }
