@@ -43,8 +43,8 @@ struct DecodeStatus {
 /// A sliding window: once every pattern has been seen, each further frame gives a depth image from
 /// the newest image of every pattern, wherever in the sequence that is; lost frames are bridged by
 /// older ones. Rows outside a frame's clean rows use the pattern's image before, or are masked.
-/// The depth image's stamp and sequence are those of the frame it is registered to: the newest where
-/// motion is followed (DecodeSettings), else the centre of the window that gave its phase.
+/// The depth image's stamp and sequence are those of the frame it is registered to: the newest
+/// where motion is followed (DecodeSettings), else the centre of the window that gave its phase.
 ///
 /// What is used of a sequence: sines by period, from the longest (three or more phases each); a
 /// Gray code with white and black images or inverted bits; other flat patterns are passed over.

@@ -2,45 +2,12 @@
 #include "core/base/frame_pool.hpp"
 
 #include <atomic>
-#include <cstdlib>
-#include <new>
 #include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-namespace {
-
-std::atomic<long> g_allocations{0};
-
-}  // namespace
-
-// Counts every allocation of this program: the pool must make none once it stands. Not inlined, or
-// GCC 12 sees free() given what operator new returned, and not that both are these.
-void* operator new(std::size_t size) {
-    ++g_allocations;
-    if (void* p = std::malloc(size)) {
-        return p;
-    }
-    throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-#ifdef __GLIBC__
-// Pixels are aligned, and come this way.
-void* operator new(std::size_t size, std::align_val_t alignment) {
-    ++g_allocations;
-    const auto unit = static_cast<std::size_t>(alignment);
-    if (void* p = std::aligned_alloc(unit, (size + unit - 1) / unit * unit)) {
-        return p;
-    }
-    throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
-    std::free(p);
-}
-#endif
+#include "tests/support/allocation_counter.hpp"
 
 namespace xtrack::base {
 namespace {
@@ -76,17 +43,21 @@ TEST(FramePool, FieldsStartAfresh) {
 }
 
 TEST(FramePool, AllocatesNothingOnceItStands) {
+    if (!test::counts_allocations()) {
+        GTEST_SKIP()
+            << "allocations cannot be counted here: no glibc, or a sanitizer is in its way";
+    }
     FramePool pool(4, {640, 480}, PixelFormat::grey8);
-    const long before = g_allocations.load();
+    const long before = test::allocations();
     for (int i = 0; i < 1000; ++i) {
         const FramePtr a = pool.acquire();
         const FramePtr b = pool.acquire();
         const FramePtr shared = a;
         ASSERT_TRUE(a && b);
     }
-    EXPECT_EQ(g_allocations.load() - before, 0);
+    EXPECT_EQ(test::allocations() - before, 0);
     { const FramePool another(1, {8, 4}, PixelFormat::grey8); }
-    EXPECT_GT(g_allocations.load(), before) << "nothing is counted";
+    EXPECT_GT(test::allocations(), before) << "nothing is counted";
 }
 
 TEST(FramePool, FramesMayOutliveIt) {
