@@ -3,11 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <xtrack/labels.hpp>
+#include <xtrack/scoring.hpp>
 #include <xtrack/session.hpp>
+#include <xtrack/sim.hpp>
 
 namespace xtrack {
 namespace {
@@ -82,6 +86,31 @@ TEST(Recordings, UnknownPresetsOfTheSimulatorNameTheKnownOnes) {
     EXPECT_NE(got.error.find("ideal-60"), std::string::npos);
 }
 
+TEST(Recordings, ASimulatedPersonIsUnderstood) {
+    auto settings = SimSettings::preset("ideal-60");
+    ASSERT_TRUE(settings);
+    settings->vary(5);
+    auto rig = SimulatedRig::create(*settings);
+    ASSERT_TRUE(rig) << rig.error().message;
+    std::vector<GestureLabel> labels;
+    for (const SimLabel& label : (*rig)->labels()) {
+        labels.push_back({label.gesture,
+                          label.hand == SimHand::left ? Chirality::left : Chirality::right,
+                          label.start, label.end, label.commit});
+    }
+    const Duration length = (*rig)->duration();
+    auto session = Session::create(std::unique_ptr<FrameSource>(std::move(*rig)), {});
+    ASSERT_TRUE(session) << session.error().message;
+    std::vector<GestureEvent> events;
+    session->subscribe([&](const GestureEvent& event) { events.push_back(event); });
+    ASSERT_TRUE(session->run());
+    GestureScorer scorer;
+    scorer.add(events, labels, length);
+    EXPECT_EQ(scorer.all().labelled, 7);
+    EXPECT_EQ(scorer.all().correct, 7);
+    EXPECT_EQ(scorer.all().false_events(), 0);
+}
+
 /// Recordings of others, not part of the project.
 class SharedRecordings : public testing::TestWithParam<const char*> {};
 
@@ -96,6 +125,9 @@ TEST_P(SharedRecordings, TheLabelledGestureIsFoundAndNothingElse) {
 INSTANTIATE_TEST_SUITE_P(Rendered, SharedRecordings,
                          testing::Values("rendered/swipe-left-dual-60",
                                          "rendered/grey-swipe-left-60"));
+INSTANTIATE_TEST_SUITE_P(DepthVideo, SharedRecordings,
+                         testing::Values("hands/depth/car-01-move-hand-left-subject3-r0",
+                                         "hands/depth/car-02-move-hand-right-subject3-r0"));
 
 }  // namespace
 }  // namespace xtrack
