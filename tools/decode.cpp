@@ -6,7 +6,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -40,37 +39,10 @@ struct DecodeOptions {
     double min_modulation = DecodeSettings{}.min_modulation;
 };
 
-// Everything that a decode of ours leaves in a folder: an earlier one may be replaced, nothing
-// else.
-const std::set<std::string> kOutputs = {"wrapped.tiff", "coordinate.tiff", "modulation.png",
-                                        "depth.png",    "cloud.ply",       "preview.png"};
-
-bool holds_only_outputs(const fs::path& folder, bool may_hold_folders) {
-    std::error_code error;
-    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-        if (it->is_directory(error) && !it->is_symlink(error)) {
-            if (!may_hold_folders || !holds_only_outputs(it->path(), false)) {
-                return false;
-            }
-        } else if (kOutputs.count(it->path().filename().string()) == 0) {
-            return false;
-        }
-    }
-    return !error;
-}
-
-// Makes the folder of the answer, with its parents; an empty one or an earlier answer is replaced.
+// Makes the folder of the answer, with its parents. What is there already is never touched.
 Result<base::NewFolder> make_output(const fs::path& wanted) {
     const fs::path out = wanted.has_filename() ? wanted : wanted.parent_path();
     std::error_code error;
-    if (fs::exists(fs::symlink_status(out, error))) {
-        if (!fs::is_directory(out, error) || !holds_only_outputs(out, true)) {
-            return Error{
-                ErrorCode::invalid_argument,
-                "--out " + out.string() + ": holds other things; remove it or give another name"};
-        }
-        return base::NewFolder::create(out, base::NewFolder::Existing::replace);
-    }
     if (out.has_parent_path()) {
         fs::create_directories(out.parent_path(), error);
     }

@@ -40,6 +40,11 @@ EventFormat format_of(const std::string& name) {
     return name == "text" ? EventFormat::text : EventFormat::none;
 }
 
+/// Where stderr is closed or full nothing can be said any more, and the exit status must do.
+void print_error(const std::string& text) { (void)std::fputs(text.c_str(), stderr); }
+
+constexpr int kInterrupted = 130;  // what shells say of Ctrl-C
+
 volatile std::sig_atomic_t signal_received = 0;
 void note_signal(int number) {
     signal_received = 1;
@@ -90,7 +95,8 @@ void add_stream_options(CLI::App& command, StreamOptions& options) {
     command
         .add_option_function<std::string>(
             "--hands", [&options](const std::string& name) { options.hands = format_of(name); },
-            "Print every hand of every frame: jsonl or none")
+            "Print every hand of every frame, in the camera's coordinates (a recording of "
+            "joints: the user's, as events are): jsonl or none")
         ->check(CLI::IsMember({"jsonl", "none"}))
         ->default_str("none");
     command.add_flag("--stats", options.statistics,
@@ -153,13 +159,21 @@ int play(Session& session, const StreamOptions& options, Pace pace, std::size_t 
     std::fflush(stdout);
     if (options.statistics) {
         const SessionStatistics statistics = session.statistics();
-        fmt::print(stderr, "{}\n", options.json ? to_json(statistics) : to_text(statistics));
+        print_error((options.json ? to_json(statistics) : to_text(statistics)) + "\n");
     }
-    return result ? 0 : fail(result.error());
+    if (!result) {
+        return fail(result.error());
+    }
+    // A live stream has no end but this; a replay that stops half-way must not pass for whole.
+    if (pace == Pace::replay && signal_received != 0) {
+        print_error("xtrack: interrupted; the events above are not all of the recording's\n");
+        return kInterrupted;
+    }
+    return 0;
 }
 
 int fail(const Error& error) {
-    fmt::print(stderr, "xtrack: {}\n", error.message);
+    print_error("xtrack: " + error.message + "\n");
     return 1;
 }
 

@@ -95,13 +95,15 @@ Result<void> write_file(const fs::path& path, std::string_view bytes) {
     return {};
 }
 
-Result<NewFolder> NewFolder::create(const fs::path& target, Existing existing) {
+Result<NewFolder> NewFolder::create(const fs::path& target) {
     NewFolder folder;
-    folder.existing_ = existing;
     folder.target_ = without_trailing_slash(target);
     std::error_code error;
-    if (folder.target_.empty() ||
-        (existing == Existing::refuse && fs::exists(fs::symlink_status(folder.target_, error)))) {
+    if (folder.target_.empty()) {
+        return Error{ErrorCode::invalid_argument, "the name of the new folder is empty; give one"};
+    }
+    const fs::file_status status = fs::symlink_status(folder.target_, error);
+    if (fs::exists(status) && !(fs::is_directory(status) && fs::is_empty(folder.target_, error))) {
         return Error{ErrorCode::invalid_argument,
                      target.string() + ": exists already; remove it or give another name"};
     }
@@ -130,7 +132,6 @@ NewFolder& NewFolder::operator=(NewFolder&& other) noexcept {
     if (this != &other) {
         discard();
         target_ = std::exchange(other.target_, {});
-        existing_ = other.existing_;
         temporary_ = std::exchange(other.temporary_, {});
     }
     return *this;
@@ -155,33 +156,16 @@ Result<void> NewFolder::write(const fs::path& inside, std::string_view bytes) co
 }
 
 Result<void> NewFolder::commit() {
+    // Onto nothing or an empty folder, in one step; the system refuses any other target, so that
+    // what has appeared there meanwhile is safe.
     std::error_code error;
-    fs::path old;
-    if (fs::exists(fs::symlink_status(target_, error))) {
-        if (existing_ == Existing::refuse) {
-            discard();
-            return io_error(target_, "has appeared meanwhile; remove it or give another name");
-        }
-        old = temporary_beside(target_);
-        fs::rename(target_, old, error);
-        if (error) {
-            discard();
-            return io_error(target_, "cannot be replaced; " + error.message());
-        }
-    }
     fs::rename(temporary_, target_, error);
-    std::error_code ignored;
     if (error) {
-        if (!old.empty()) {
-            fs::rename(old, target_, ignored);
-        }
         discard();
-        return io_error(target_, "cannot be made; " + error.message());
+        return io_error(target_, "cannot be made; " + error.message() +
+                                     "; remove what is there or give another name");
     }
     temporary_.clear();
-    if (!old.empty()) {
-        fs::remove_all(old, ignored);
-    }
     return {};
 }
 

@@ -24,15 +24,10 @@ namespace xtrack::base {
 /// @thread one at a time
 class NewFolder {
  public:
-    enum class Existing {
-        refuse,   ///< a target that exists is an Error
-        replace,  ///< commit() replaces it; the caller has made sure that nothing is lost
-    };
-
-    /// @return an Error if the target exists and shall not be replaced, or its parent is missing or
-    ///         not writable
-    [[nodiscard]] static Result<NewFolder> create(const std::filesystem::path& target,
-                                                  Existing existing = Existing::refuse);
+    /// @return an Error if the target is there and is anything but an empty folder, or its parent
+    /// is
+    ///         missing or not writable
+    [[nodiscard]] static Result<NewFolder> create(const std::filesystem::path& target);
 
     NewFolder(NewFolder&& other) noexcept;
     NewFolder& operator=(NewFolder&& other) noexcept;
@@ -49,8 +44,8 @@ class NewFolder {
     /// Writes a file inside, readable by its owner alone.
     [[nodiscard]] Result<void> write(const std::filesystem::path& inside,
                                      std::string_view bytes) const;
-    /// Gives the folder its name. @return an Error if the name has been taken meanwhile; the
-    /// folder is then removed.
+    /// Gives the folder its name. @return an Error if something has appeared there meanwhile, which
+    /// stays untouched; the folder is then removed.
     [[nodiscard]] Result<void> commit();
     /// Removes what was written so far. Cannot fail.
     void discard() noexcept;
@@ -59,7 +54,6 @@ class NewFolder {
     NewFolder() = default;
 
     std::filesystem::path target_;
-    Existing existing_ = Existing::refuse;
     std::filesystem::path temporary_;  // empty once committed or discarded
 };
 

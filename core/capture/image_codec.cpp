@@ -33,18 +33,18 @@ Result<void> check(std::string_view bytes, const std::string& name, Size size, i
     return {};
 }
 
-// Decodes straight into our rows: OpenCV keeps a Mat whose size and type already fit.
+// Into a Mat of OpenCV's own: one that is handed over comes back as it was when the header cannot
+// be read, and would pass for an image.
 template <typename T>
 Result<void> decode(std::string_view bytes, const std::string& name, Size size, int type, int flags,
                     Image<T>& out) {
     try {
         const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8UC1,
                               const_cast<char*>(bytes.data()));  // NOLINT: OpenCV reads only
-        cv::Mat rows(size.height, size.width, type, out.row(0),
-                     static_cast<std::size_t>(out.stride()) * sizeof(T));
-        const void* ours = rows.data;
-        cv::imdecode(encoded, flags, &rows);
-        if (!rows.empty() && rows.data == ours) {
+        const cv::Mat decoded = cv::imdecode(encoded, flags);
+        if (decoded.cols == size.width && decoded.rows == size.height && decoded.type() == type) {
+            decoded.copyTo(cv::Mat(size.height, size.width, type, out.row(0),
+                                   static_cast<std::size_t>(out.stride()) * sizeof(T)));
             return {};
         }
     } catch (const std::exception&) {

@@ -31,6 +31,8 @@ constexpr Duration kApertureLost = std::chrono::milliseconds{300};
 // The fingers must be seen on their way: in this share of the samples of pinch_approach_ms. Cameras
 // that see a hand well know 0.75 and more, a hand whose tips come and go 0.6 and less.
 constexpr double kApproachShare = 0.65;
+// At 60 images a second five images of a hand this fast smear over 25 mm.
+constexpr float kBlurringPalm_mmps = 300.0F;
 constexpr double kSmallestWayMm = 1.0;
 constexpr double kCapShare = 1.25;  // of pinch_close_mm: a hand length may be measured badly
 
@@ -93,8 +95,11 @@ Before look_back(const MotionHistory& history, Stamp open_at) {
     return before;
 }
 
-/// Share of samples before `closed_at` in which the aperture was known and could be believed.
-double approach_seen(const MotionHistory& history, Stamp closed_at, Duration window) {
+/// Share of samples before `closed_at` in which the aperture was known and could be believed. A
+/// camera's depth is measured over some frames, in which a fast hand moves by as much as its
+/// fingers are apart: what was seen of them in a stroke is no approach.
+double approach_seen(const MotionHistory& history, Stamp closed_at, const GestureSettings& s) {
+    const Duration window = from_ms(s.pinch_approach_ms);
     int all = 0;
     int seen = 0;
     for (std::size_t i = 0; i < history.size(); ++i) {
@@ -104,7 +109,10 @@ double approach_seen(const MotionHistory& history, Stamp closed_at, Duration win
         }
         if (past.stamp < closed_at) {
             ++all;
-            seen += past.aperture_mm >= 0.0F ? 1 : 0;
+            const bool blurred =
+                !past.from_joints &&
+                history.velocity(from_ms(s.velocity_window_ms), i).norm() > kBlurringPalm_mmps;
+            seen += past.aperture_mm >= 0.0F && !blurred ? 1 : 0;
         }
     }
     return all > 0 ? static_cast<double>(seen) / all : 0.0;
@@ -332,7 +340,7 @@ Refusal PinchMachine::spoiler(const Context& c) const {
     const MotionSample& now = c.history.newest();
     const Before before = look_back(c.history, open_at_);
 
-    const double seen = approach_seen(c.history, closed_at_, from_ms(s.pinch_approach_ms));
+    const double seen = approach_seen(c.history, closed_at_, s);
     if (seen < kApproachShare) {
         return {"the approach was not seen", seen, kApproachShare};
     }

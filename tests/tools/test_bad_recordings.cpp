@@ -223,6 +223,7 @@ TEST_F(Recording, WithoutDamageIsDecodedWhole) {
 TEST_F(Recording, WithoutCountsKeepsEveryDepthApart) {
     write_fringes(recording_);
     const auto folders = [&] {
+        fs::remove_all(out_);
         const Outcome outcome =
             xtrack_command({"decode", recording_.string(), "--all", "--out", out_.string()});
         EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -272,7 +273,7 @@ TEST_F(Recording, IsNotDecodedOverSomethingElse) {
     fs::create_directory(out_);
     set_text(out_ / "precious.txt", "mine");
     expect_refused(xtrack_command({"decode", recording_.string(), "--out", out_.string()}),
-                   "--out");
+                   "exists already");
     EXPECT_EQ(text_of(out_ / "precious.txt"), "mine");
     EXPECT_FALSE(fs::exists(out_ / "depth.png"));
 }

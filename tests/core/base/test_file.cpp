@@ -71,19 +71,30 @@ TEST_F(FileTest, NewFolderLeavesNothingWithoutCommit) {
     EXPECT_EQ(entries(), 0U);
 }
 
-TEST_F(FileTest, NewFolderReplacesOnlyWhenTold) {
+TEST_F(FileTest, NewFolderTakesAnEmptyFoldersPlaceAndNoOther) {
     fs::create_directory(folder_ / "out");
-    std::ofstream(folder_ / "out" / "old.txt") << "old";
+    auto made = NewFolder::create(folder_ / "out");
+    ASSERT_TRUE(made.ok()) << made.error().message;
+    ASSERT_TRUE(made->write("new.txt", "x").ok());
+    ASSERT_TRUE(made->commit().ok());
+    EXPECT_TRUE(fs::exists(folder_ / "out" / "new.txt"));
     EXPECT_FALSE(NewFolder::create(folder_ / "out").ok());
-    auto made = NewFolder::create(folder_ / "out", NewFolder::Existing::replace);
+    EXPECT_FALSE(NewFolder::create(folder_ / "out" / "new.txt").ok());
+    EXPECT_FALSE(NewFolder::create(folder_ / "missing" / "out").ok());
+    EXPECT_FALSE(NewFolder::create("").ok());
+    EXPECT_EQ(entries(), 1U);
+}
+
+TEST_F(FileTest, WhatAppearsBeforeTheCommitIsSafe) {
+    fs::create_directory(folder_ / "out");
+    auto made = NewFolder::create(folder_ / "out");
     ASSERT_TRUE(made.ok());
     ASSERT_TRUE(made->write("new.txt", "x").ok());
-    EXPECT_TRUE(fs::exists(folder_ / "out" / "old.txt"));
-    ASSERT_TRUE(made->commit().ok());
-    EXPECT_FALSE(fs::exists(folder_ / "out" / "old.txt"));
-    EXPECT_TRUE(fs::exists(folder_ / "out" / "new.txt"));
+    std::ofstream(folder_ / "out" / "precious.txt") << "mine";
+    EXPECT_FALSE(made->commit().ok());
+    EXPECT_EQ(*read_file(folder_ / "out" / "precious.txt", 9), "mine");
+    EXPECT_FALSE(fs::exists(folder_ / "out" / "new.txt"));
     EXPECT_EQ(entries(), 1U);
-    EXPECT_FALSE(NewFolder::create(folder_ / "missing" / "out").ok());
 }
 
 TEST(StaysInside, KnowsEscapes) {

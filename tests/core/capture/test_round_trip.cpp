@@ -172,7 +172,7 @@ TEST_F(RoundTrip, WriterLeavesNothingUnlessItIsClosed) {
 
 TEST_F(RoundTrip, WriterRefusesWhatWouldNotReadBack) {
     const auto patterns = three_step_sequence(Axis::x, {1024, 768}, 16.0);
-    fs::create_directory(folder_ / "taken");
+    fs::create_directories(folder_ / "taken" / "by others");
     EXPECT_THAT(RecordingWriter::create(folder_ / "taken", {{}, patterns}).error().message,
                 HasSubstr("exists already"));
     Rig singular = small_rig();
