@@ -95,9 +95,14 @@ Before look_back(const MotionHistory& history, Stamp open_at) {
     return before;
 }
 
-/// Share of samples before `closed_at` in which the aperture was known and could be believed. A
-/// camera's depth is measured over some frames, in which a fast hand moves by as much as its
-/// fingers are apart: what was seen of them in a stroke is no approach.
+/// A camera's depth is measured over some frames, in which a fast hand moves by as much as its
+/// fingers are apart: what is seen of them in a stroke cannot be believed.
+bool blurred(const MotionHistory& history, std::size_t back, const GestureSettings& s) {
+    return !history.at(back).from_joints &&
+           history.velocity(from_ms(s.velocity_window_ms), back).norm() > kBlurringPalm_mmps;
+}
+
+/// Share of samples before `closed_at` in which the aperture was known and could be believed.
 double approach_seen(const MotionHistory& history, Stamp closed_at, const GestureSettings& s) {
     const Duration window = from_ms(s.pinch_approach_ms);
     int all = 0;
@@ -109,10 +114,7 @@ double approach_seen(const MotionHistory& history, Stamp closed_at, const Gestur
         }
         if (past.stamp < closed_at) {
             ++all;
-            const bool blurred =
-                !past.from_joints &&
-                history.velocity(from_ms(s.velocity_window_ms), i).norm() > kBlurringPalm_mmps;
-            seen += past.aperture_mm >= 0.0F && !blurred ? 1 : 0;
+            seen += past.aperture_mm >= 0.0F && !blurred(history, i, s) ? 1 : 0;
         }
     }
     return all > 0 ? static_cast<double>(seen) / all : 0.0;
@@ -340,6 +342,9 @@ Refusal PinchMachine::spoiler(const Context& c) const {
     const MotionSample& now = c.history.newest();
     const Before before = look_back(c.history, open_at_);
 
+    if (blurred(c.history, c.history.count_within(c.sensor - closed_at_) - 1, s)) {
+        return {"the palm moved too fast to see fingers", 0.0, 0.0};
+    }
     const double seen = approach_seen(c.history, closed_at_, s);
     if (seen < kApproachShare) {
         return {"the approach was not seen", seen, kApproachShare};

@@ -14,8 +14,12 @@ constexpr auto kIndex = static_cast<std::size_t>(Finger::index);
 
 /// A finger that is not seen keeps its place for so long, s: four frames at 30 Hz.
 constexpr double kForgetS = 0.15;
-/// An aperture that cannot be measured is held for so long, s.
+/// An aperture that cannot be measured is told for so long, s ...
 constexpr double kHoldS = 0.07;
+/// ... and for so long its course says whether the fingers may have met meanwhile, s.
+constexpr double kCourseS = 0.15;
+/// The course is smoothed over this, s: noise of 3 mm a frame is 250 mm/s from frame to frame.
+constexpr float kCourseSmoothS = 0.05F;
 /// Fingers of one hand do not open or close faster, mm/s, and a frame may be off by the step, mm.
 constexpr float kApertureMmps = 1200.0F;
 constexpr float kApertureStepMm = 12.0F;
@@ -37,6 +41,8 @@ constexpr float kMeetingReachMm = 22.0F;
 constexpr float kMeetingMmps = 350.0F;
 /// How fast an aperture that is out of sight may have closed, mm/s. People close at 150..500.
 constexpr float kClosingMmps = 450.0F;
+/// An aperture that grew by more, mm/s, before it went out of sight did not close there.
+constexpr float kOpeningMmps = 150.0F;
 /// Fingers that have met are still there while the hand reaches so far of the way to them.
 constexpr float kStillThereShare = 0.85F;
 /// A ring is as large as two fingers; its far end is this near to where the tips were, mm.
@@ -85,14 +91,17 @@ void FingerTracks::update(Stamp stamp, const HandRegion& region, int side, Finge
     } else {
         FingerReading timed = reading;
         follow(stamp, region, side, timed);
-        // A hand with all five fingers is named by its own look; time may have been wrong.
-        if (!whole || touching_ || names_agree(reading)) {
+        // A hand with all five fingers is named by its own look; time may have been wrong, also
+        // about a touch: fingers that have met are one tip.
+        if (!whole || names_agree(reading)) {
             agreed_ = stamp;
         }
         if (to_seconds(stamp - agreed_) > kContradictedS) {
             for (FingerState& f : fingers_) {
                 f.known = false;
             }
+            touching_ = false;
+            aperture_known_ = course_known_ = false;
             adopt(stamp, region, reading);
             agreed_ = stamp;
         } else {
@@ -201,8 +210,8 @@ bool FingerTracks::met(Stamp stamp, const HandRegion& region, const FingerReadin
     }
     const Vec3f middle = 0.5F * (thumb.tip_mm + index.tip_mm);
     const auto blind = static_cast<float>(to_seconds(stamp - aperture_at_));
-    const bool were_near =
-        touching_ || (aperture_known_ && aperture_mm_ - kClosingMmps * blind < kMeetingFromMm);
+    const bool were_near = touching_ || (course_known_ && course_mmps_ < kOpeningMmps &&
+                                         aperture_mm_ - kClosingMmps * blind < kMeetingFromMm);
     if (reading.ring) {
         where_mm = reading.ring_tip_mm - region.palm_mm;
         // Without a glimpse of the two running into each other, a hole must lie where they are.
@@ -256,6 +265,7 @@ void FingerTracks::measure_aperture(Stamp stamp, const HandRegion& region, int s
         thumb = {where, stamp, true, true, thumb.tip};
         index = {where, stamp, true, true, index.tip};
         accept(stamp, kTouchMm);
+        course_mmps_ = 0.0F;  // it ends where they meet
         return;
     }
     if (thumb.fresh && index.fresh) {
@@ -269,26 +279,33 @@ void FingerTracks::measure_aperture(Stamp stamp, const HandRegion& region, int s
         touching_ = touching_ && aperture_mm_ < kApartMm;
         return;
     }
-    if (aperture_known_ && to_seconds(stamp - aperture_at_) > kHoldS) {
+    const double unseen_s = to_seconds(stamp - aperture_at_);
+    if (aperture_known_ && unseen_s > kHoldS) {
         aperture_known_ = false;
-        aperture_mm_ = -1.0F;
         touching_ = false;
     }
+    course_known_ = course_known_ && unseen_s <= kCourseS;
 }
 
 void FingerTracks::accept(Stamp stamp, float aperture_mm) {
+    const auto t = static_cast<float>(to_seconds(stamp - aperture_at_));
     if (aperture_known_) {
         // A jump is held back, and let through when it lasts longer than a bad frame or two.
-        const auto t = static_cast<float>(to_seconds(stamp - aperture_at_));
         const bool jump =
             std::abs(aperture_mm - aperture_mm_) > kApertureStepMm + kApertureMmps * t;
         if (jump && static_cast<double>(t) <= kHoldS) {
             return;
         }
     }
+    if (!course_known_) {
+        course_mmps_ = 0.0F;
+    } else if (t > 0.0F) {
+        const float share = 1.0F - std::exp(-t / kCourseSmoothS);
+        course_mmps_ += share * ((aperture_mm - aperture_mm_) / t - course_mmps_);
+    }
     aperture_mm_ = aperture_mm;
     aperture_at_ = stamp;
-    aperture_known_ = true;
+    aperture_known_ = course_known_ = true;
 }
 
 }  // namespace xtrack::track

@@ -39,7 +39,9 @@ class FingerTracks {
         return fingers_[static_cast<std::size_t>(f)];
     }
     /// Pad of the thumb to pad of the index finger; -1 = not known.
-    [[nodiscard]] float aperture_mm() const noexcept { return aperture_mm_; }
+    [[nodiscard]] float aperture_mm() const noexcept {
+        return aperture_known_ ? aperture_mm_ : -1.0F;
+    }
     /// Thumb and index are seen as one.
     [[nodiscard]] bool touching() const noexcept { return touching_; }
     /// The tips of this frame were named by those of the frame before.
@@ -57,9 +59,11 @@ class FingerTracks {
     void accept(Stamp stamp, float aperture_mm);
 
     std::array<FingerState, kFingerCount> fingers_{};
-    float aperture_mm_ = -1.0F;
+    float aperture_mm_ = -1.0F;  ///< as last measured
     Stamp aperture_at_;
     bool aperture_known_ = false;
+    float course_mmps_ = 0.0F;  ///< of the aperture: negative closes
+    bool course_known_ = false;
     bool touching_ = false;
     Vec3f touch_mm_ = Vec3f::Zero();  ///< where, from the palm's centre
     Stamp touch_seen_;                ///< when there was last something to see of it

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Hands as a depth camera shows them: no joints, fingertips that come and go, a border.
+#include <algorithm>
 #include <functional>
 
 #include <gmock/gmock.h>
@@ -150,6 +151,31 @@ TEST(CameraHand, APinchOutlivesFingertipsThatMergeForAMoment) {
         }
     });
     EXPECT_THAT(stage.story(), ElementsAre("pinch begin", "pinch end"));
+}
+
+TEST(CameraHand, FingersThatSeemToMeetInAStrokeDoNotPinch) {
+    // A stroke of 300 mm in 450 ms that stops; the tips seem to meet half-way and stay together.
+    for (const bool in_stroke : {true, false}) {
+        const Actor actor{{{0, at(0, 0), 75},
+                           {1200, at(0, 0), 75},
+                           {1650, at(0, -300), 75},
+                           {3000, at(0, -300), 75}}};
+        GestureSettings settings;
+        settings.swipe = false;
+        Stage stage(settings);
+        play(stage, actor, [in_stroke](int, double ms, Hand& hand) {
+            const double met_ms = in_stroke ? 1480.0 : 2100.0;
+            const double closing_mm =
+                75.0 - std::clamp((ms - met_ms + 50.0) / 50.0, 0.0, 1.0) * 67.0;
+            hand.pinch_aperture_mm = static_cast<float>(closing_mm);
+        });
+        if (in_stroke) {
+            EXPECT_THAT(stage.story(), IsEmpty());
+            EXPECT_TRUE(stage.explained("pinch", "the palm moved too fast to see fingers"));
+        } else {
+            EXPECT_THAT(stage.story(), ElementsAre("pinch begin"));
+        }
+    }
 }
 
 TEST(CameraHand, TipsThatComeAndGoAreNoPinch) {

@@ -133,6 +133,54 @@ TEST_F(FingerTracksTest, tips_that_come_apart_measure_at_once) {
     EXPECT_NEAR(tracks_.aperture_mm(), 22.5F, 0.1F);
 }
 
+TEST_F(FingerTracksTest, fingers_that_come_apart_do_not_meet_again_where_one_is_lost) {
+    close_hand();
+    outer_fingers();
+    add({52.0F, -78.0F, 0.0F}, Finger::index);
+    step();
+    ASSERT_TRUE(tracks_.touching());
+    for (float gap_mm = 15.0F; gap_mm < 31.0F; gap_mm += 5.0F) {
+        outer_fingers();
+        add({45.0F, -85.0F, 0.0F}, Finger::index);
+        add({45.0F + gap_mm, -85.0F, 0.0F}, Finger::thumb);
+        reading_.thumb = 4;
+        reading_.thumb_side = kThumbClockwise;
+        step();
+    }
+    ASSERT_FALSE(tracks_.touching()) << tracks_.aperture_mm();
+    outer_fingers();
+    add({60.0F, -85.0F, 0.0F}, Finger::thumb);
+    reading_.thumb = 3;
+    reading_.thumb_side = kThumbClockwise;
+    step();
+
+    EXPECT_FALSE(tracks_.touching());
+}
+
+TEST_F(FingerTracksTest, a_touch_that_five_tips_contradict_is_let_go) {
+    close_hand();
+    outer_fingers();
+    add({52.0F, -78.0F, 0.0F}, Finger::index);
+    step();
+    ASSERT_TRUE(tracks_.touching());
+    // A lone thumb has stayed where they met, under the index finger's name; all five are in view.
+    for (int frame = 0; frame < 20; ++frame) {
+        reading_ = {};
+        add({-75.0F, -60.0F, 0.0F}, Finger::little);
+        add({-60.0F, -80.0F, 0.0F}, Finger::ring);
+        add({-30.0F, -105.0F, 0.0F}, Finger::middle);
+        add({0.0F, -115.0F, 0.0F}, Finger::index);
+        add({52.0F, -78.0F, 0.0F}, Finger::thumb);
+        reading_.thumb = 4;
+        reading_.thumb_side = kThumbClockwise;
+        step();
+    }
+
+    EXPECT_FALSE(tracks_.touching());
+    EXPECT_EQ(reading_.tips[4].finger, Finger::thumb);
+    EXPECT_NEAR(tracks_.aperture_mm(), 63.8F, 0.1F);
+}
+
 TEST_F(FingerTracksTest, a_hole_far_from_the_tips_is_no_ring) {
     open_hand(-20.0F);
     step();
