@@ -41,7 +41,8 @@ struct HandTracker::State {
     /// Gives every region its track: the nearest pairs first, then new ones.
     void match(Stamp stamp, std::span<const HandRegion> regions,
                std::array<track::HandTrack*, kMaxHands>& of_region);
-    track::HandTrack& free_track();
+    /// One that no region of this frame has: an ended one, else the one that was away longest.
+    track::HandTrack& free_track(const std::array<track::HandTrack*, kMaxHands>& of_region);
 };
 
 void HandTracker::State::match(Stamp stamp, std::span<const HandRegion> regions,
@@ -73,21 +74,25 @@ void HandTracker::State::match(Stamp stamp, std::span<const HandRegion> regions,
     }
     for (std::size_t k = 0; k < regions.size(); ++k) {
         if (of_region[k] == nullptr) {
-            of_region[k] = &free_track();
+            of_region[k] = &free_track(of_region);
             of_region[k]->begin(next_id++);
         }
     }
 }
 
-track::HandTrack& HandTracker::State::free_track() {
-    track::HandTrack* oldest = &tracks[0];
+track::HandTrack& HandTracker::State::free_track(
+    const std::array<track::HandTrack*, kMaxHands>& of_region) {
+    track::HandTrack* oldest = nullptr;
     for (track::HandTrack& t : tracks) {
+        if (std::find(of_region.begin(), of_region.end(), &t) != of_region.end()) {
+            continue;
+        }
         if (!t.active()) {
             return t;
         }
-        oldest = t.last_seen() < oldest->last_seen() ? &t : oldest;
+        oldest = oldest == nullptr || t.last_seen() < oldest->last_seen() ? &t : oldest;
     }
-    return *oldest;
+    return *oldest;  // there are more tracks than regions
 }
 
 const char* to_string(TrackStatus s) noexcept {
