@@ -267,6 +267,7 @@ void MotionEstimator::update(const FrameWindow& window, const Frame& newest) noe
     small.frame = &newest;
     now_ = newest.stamp;
     moving_ = false;
+    pairs_.clear();  // they point to frames that the window may have let go
     age_cells();
     const auto comparable = [&](const Frame* frame) -> const Small* {
         return frame != nullptr && frame->stamp < newest.stamp ? find_small(*frame) : nullptr;
