@@ -149,6 +149,11 @@ void DepthDecoder::Impl::register_depth(const Frame& newest) noexcept {
             }
         }
     }
+    Stamp first = newest.stamp;
+    for (const int pattern : plan.needed) {
+        first = std::min(first, window.newest(pattern)->stamp);
+    }
+    depth.span = newest.stamp - first;
     depth.stamp = centre->stamp;
     depth.sequence = centre->sequence;
     phase_map.stamp = centre->stamp;

@@ -86,9 +86,10 @@ float MotionSample::outer_extension() const noexcept {
     return known > 0 ? sum / static_cast<float>(known) : -1.0F;
 }
 
-MotionSample sample_of(const Hand& hand, Stamp stamp) noexcept {
+MotionSample sample_of(const Hand& hand, Stamp stamp, Duration span) noexcept {
     MotionSample s;
     s.stamp = stamp;
+    s.span = span;
     s.palm_mm = hand.palm_mm;
     const TrackedPoint& index = hand.fingertip(Finger::index);
     const TrackedPoint& thumb = hand.fingertip(Finger::thumb);

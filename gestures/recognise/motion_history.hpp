@@ -19,6 +19,7 @@ namespace xtrack::recognise {
 /// What the machines remember of a hand at one moment.
 struct MotionSample {
     Stamp stamp;
+    Duration span = Duration::zero();  ///< over which it was measured; 0 = not known
     Vec3f palm_mm = Vec3f::Zero();
     Vec3f index_tip_mm = Vec3f::Zero();
     bool index_tip_known = false;
@@ -43,7 +44,7 @@ struct MotionSample {
     [[nodiscard]] float outer_extension() const noexcept;
 };
 
-[[nodiscard]] MotionSample sample_of(const Hand& hand, Stamp stamp) noexcept;
+[[nodiscard]] MotionSample sample_of(const Hand& hand, Stamp stamp, Duration span) noexcept;
 
 /// The last second of one hand, newest first. Fixed size; never allocates.
 class MotionHistory {

@@ -31,8 +31,11 @@ constexpr Duration kApertureLost = std::chrono::milliseconds{300};
 // The fingers must be seen on their way: in this share of the samples of pinch_approach_ms. Cameras
 // that see a hand well know 0.75 and more, a hand whose tips come and go 0.6 and less.
 constexpr double kApproachShare = 0.65;
-// At 60 images a second five images of a hand this fast smear over 25 mm.
-constexpr float kBlurringPalm_mmps = 300.0F;
+// Of a palm that moves farther while its depth is measured the fingers cannot be told apart, mm:
+// half a finger's breadth.
+constexpr double kBlurMm = 10.0;
+// Five images at 60 Hz, or a depth camera at 15 Hz.
+constexpr Duration kUsualSpan = std::chrono::nanoseconds{1'000'000'000 / 15};
 constexpr double kSmallestWayMm = 1.0;
 constexpr double kCapShare = 1.25;  // of pinch_close_mm: a hand length may be measured badly
 
@@ -95,11 +98,16 @@ Before look_back(const MotionHistory& history, Stamp open_at) {
     return before;
 }
 
-/// A camera's depth is measured over some frames, in which a fast hand moves by as much as its
-/// fingers are apart: what is seen of them in a stroke cannot be believed.
-bool blurred(const MotionHistory& history, std::size_t back, const GestureSettings& s) {
-    return !history.at(back).from_joints &&
-           history.velocity(from_ms(s.velocity_window_ms), back).norm() > kBlurringPalm_mmps;
+/// How far the palm moved while its depth was measured: a camera's depth is made of several images,
+/// and what is seen of the fingers in a stroke cannot be believed. 0 for joints.
+double blur_mm(const MotionHistory& history, std::size_t back, const GestureSettings& s) {
+    const MotionSample& sample = history.at(back);
+    if (sample.from_joints) {
+        return 0.0;
+    }
+    const Duration span = sample.span > Duration::zero() ? sample.span : kUsualSpan;
+    const Duration window = std::max(span, from_ms(s.velocity_window_ms));
+    return static_cast<double>(history.velocity(window, back).norm()) * to_seconds(span);
 }
 
 /// Share of samples before `closed_at` in which the aperture was known and could be believed.
@@ -114,7 +122,7 @@ double approach_seen(const MotionHistory& history, Stamp closed_at, const Gestur
         }
         if (past.stamp < closed_at) {
             ++all;
-            seen += past.aperture_mm >= 0.0F && !blurred(history, i, s) ? 1 : 0;
+            seen += past.aperture_mm >= 0.0F && blur_mm(history, i, s) <= kBlurMm ? 1 : 0;
         }
     }
     return all > 0 ? static_cast<double>(seen) / all : 0.0;
@@ -324,6 +332,11 @@ PinchMachine::Event PinchMachine::judge(const Context& c, double aperture_mm,
             refusal = {"the palm moves", palm_mmps, s.pinch_palm_mmps};
             return held_ms > s.pinch_settle_ms ? Event::spoilt : Event::closed;
         }
+        const double blur_now_mm = blur_mm(c.history, 0, s);
+        if (blur_now_mm > kBlurMm) {
+            refusal = {"the palm moves too fast to see fingers", blur_now_mm, kBlurMm};
+            return held_ms > s.pinch_settle_ms ? Event::spoilt : Event::closed;
+        }
         refusal = spoiler(c);
         return *refusal.why == '\0' ? Event::held : Event::spoilt;
     }
@@ -342,8 +355,10 @@ Refusal PinchMachine::spoiler(const Context& c) const {
     const MotionSample& now = c.history.newest();
     const Before before = look_back(c.history, open_at_);
 
-    if (blurred(c.history, c.history.count_within(c.sensor - closed_at_) - 1, s)) {
-        return {"the palm moved too fast to see fingers", 0.0, 0.0};
+    const std::size_t closed = c.history.count_within(c.sensor - closed_at_) - 1;
+    const double blur_then_mm = blur_mm(c.history, closed, s);
+    if (blur_then_mm > kBlurMm) {
+        return {"the palm moved too fast to see fingers", blur_then_mm, kBlurMm};
     }
     const double seen = approach_seen(c.history, closed_at_, s);
     if (seen < kApproachShare) {

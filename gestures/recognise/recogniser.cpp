@@ -163,8 +163,9 @@ struct GestureRecogniser::Impl {
         return *free;
     }
 
-    void run_gestures(Slot& slot, Stamp now) {
-        if (!slot.presence.followed() || !slot.history.add(recognise::sample_of(slot.hand, now))) {
+    void run_gestures(Slot& slot, Stamp now, Duration span) {
+        if (!slot.presence.followed() ||
+            !slot.history.add(recognise::sample_of(slot.hand, now, span))) {
             return;
         }
         const Gate gate = !slot.presence.may_act()   ? Gate::entering
@@ -242,7 +243,7 @@ std::span<const GestureEvent> GestureRecogniser::push(const HandFrame& frame) {
         }
         m.pass_time(slot, now, now, now);
         if (slot.used && slot.seen_now) {
-            m.run_gestures(slot, now);
+            m.run_gestures(slot, now, frame.span);
         }
     }
     return m.out.all();

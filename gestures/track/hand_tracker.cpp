@@ -177,6 +177,7 @@ const HandFrame& HandTracker::track(const DepthFrame& depth) {
     std::array<track::HandTrack*, kMaxHands> of_region{};
     s.match(depth.stamp, regions, of_region);
     s.frame.stamp = depth.stamp;
+    s.frame.span = depth.span;
     s.frame.coordinates = CoordinateFrame::camera;
     s.frame.count = regions.size();
     for (std::size_t k = 0; k < regions.size(); ++k) {

@@ -162,12 +162,14 @@ TEST(RoundTrip, DepthFrame) {
     DepthFrame before;
     before.stamp = Stamp{1};
     before.sequence = 2;
+    before.span = Duration{7};
     before.depth_unit_mm = 0.5;
     before.depth = ramp_image<std::uint16_t>(7, 4);
     before.quality = ramp_image<std::uint8_t>(7, 4);
     const DepthFrame after = echo(before);
     EXPECT_EQ(after.stamp, Stamp{2});
     EXPECT_EQ(after.sequence, 3U);
+    EXPECT_EQ(after.span, Duration{8});
     EXPECT_EQ(after.depth_unit_mm, 1.5);
     EXPECT_FALSE(after.metric);
     expect_grown_image(after.depth, before.depth);
@@ -243,10 +245,12 @@ TEST(RoundTrip, Hand) { expect_grown_hand(echo(some_hand(3)), some_hand(3)); }
 TEST(RoundTrip, HandFrame) {
     HandFrame before;
     before.stamp = Stamp{1};
+    before.span = Duration{7};
     before.hands = {some_hand(1), some_hand(2)};
     before.count = 1;
     const HandFrame after = echo(before);
     EXPECT_EQ(after.stamp, Stamp{2});
+    EXPECT_EQ(after.span, Duration{8});
     EXPECT_EQ(after.coordinates, CoordinateFrame::interaction);
     EXPECT_EQ(after.count, 2U);
     expect_grown_hand(after.hands[0], before.hands[0]);

@@ -133,6 +133,7 @@ PhaseMap echo(PhaseMap value) {
 DepthFrame echo(DepthFrame value) {
     value.stamp = echo(value.stamp);
     ++value.sequence;
+    value.span += Duration{1};
     value.depth_unit_mm += 1.0;
     value.metric = !value.metric;
     grow(value.depth);
@@ -184,6 +185,7 @@ Hand echo(Hand value) {
 
 HandFrame echo(HandFrame value) {
     value.stamp = echo(value.stamp);
+    value.span += Duration{1};
     value.coordinates = CoordinateFrame::interaction;
     for (Hand& hand : value.hands) {
         hand = echo(hand);

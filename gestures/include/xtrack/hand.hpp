@@ -101,6 +101,7 @@ inline constexpr std::size_t kMaxHands = 2;
 /// @since 0.1
 struct HandFrame {
     Stamp stamp;
+    Duration span = Duration::zero();  ///< of the depth frame that they were seen in; 0 = not known
     CoordinateFrame coordinates = CoordinateFrame::camera;
     std::array<Hand, kMaxHands> hands{};
     std::size_t count = 0;
