@@ -125,10 +125,14 @@ void DepthDecoder::Impl::decode_gray_row(int y, float* coordinate_px, float* mod
     row.coordinate_px = coordinate_px;
     row.modulation = modulation;
     gray_code_row(row);
-    if (settings.keep_maps && row.white != nullptr && row.black != nullptr) {
+    if (settings.keep_maps && plan.sines.empty()) {
+        // Without flats every bit has its inverse: the two light each pixel once, as white does.
+        const bool flats = row.white != nullptr && row.black != nullptr;
+        const std::uint8_t* lit = flats ? row.white : row.image[0];
+        const std::uint8_t* dark = flats ? row.black : row.inverse[0];
         float* mean = average.row(y);
         for (int i = 0; i < size.width; ++i) {
-            mean[i] = 0.5F * static_cast<float>(row.white[i] + row.black[i]);
+            mean[i] = 0.5F * static_cast<float>(lit[i] + dark[i]);
         }
     }
 }

@@ -45,16 +45,16 @@ Result<void> DepthDecoder::Impl::prepare(const Rig& rig) {
         }
         order = *std::move(made);
     }
+    if (settings.order != OrderSource::automatic && plan.sines.empty()) {
+        return Error{ErrorCode::unsupported,
+                     "pattern sequence: a Gray code without sines has no phase; it gives depth, "
+                     "for which order must be automatic and the rig known"};
+    }
     if (settings.order == OrderSource::depth_image) {
-        if (plan.sines.empty()) {
-            return Error{ErrorCode::unsupported,
-                         "pattern sequence: without sines there is no order to take from a depth "
-                         "image; choose automatic"};
-        }
         order_px = Image<float>(size.width, size.height, kNone);
     }
-    depth.depth.resize(size.width, size.height);
-    depth.quality.resize(size.width, size.height);
+    depth.depth = Image<std::uint16_t>(size.width, size.height, 0);
+    depth.quality = Image<std::uint8_t>(size.width, size.height, 0);
     depth.metric = geometry.has_value();
     if (settings.keep_maps) {
         phase_map.period_px = plan.sines.empty() ? 0.0 : plan.sines.back().period_px;

@@ -52,19 +52,19 @@ struct DecodeStatus {
 /// has harmonics that depend on gamma alone, so the error is a function of the phase, whatever the
 /// skin's shade and the ambient light.
 ///
-/// @thread one at a time
 /// Where a pattern is held for some camera frames, the clean rows of two of them are averaged, and
 /// motion is measured from one frame to the next.
+/// @thread one at a time
 /// @ownership holds the FramePtrs of the window, at most two a pattern, four where patterns are
-/// held
-///            for more than one frame; copies no pixels
+///            held for more than one frame; copies no pixels
 /// @since 0.1
 class DepthDecoder {
  public:
     /// @param image width and height of the frames that will be pushed, px
     /// @return unsupported for sequences this decoder has no method for (colour fringes, a period
-    ///         whose order nothing gives); invalid_argument for settings out of range, singular
-    ///         geometry, a rig without projector, a projector size that disagrees with the pattern
+    ///         whose order nothing gives, a Gray code alone where no order is wanted);
+    ///         invalid_argument for settings out of range, singular geometry, a rig without
+    ///         projector, a projector size that disagrees with the pattern
     [[nodiscard]] static Result<DepthDecoder> create(const Rig& rig,
                                                      const PatternSequence& patterns, Size image,
                                                      const DecodeSettings& settings);
@@ -76,21 +76,23 @@ class DepthDecoder {
     /// Takes one frame. Equal stamps are allowed. No heap allocation.
     DecodeStatus push(const FramePtr& frame) noexcept;
 
-    /// The newest depth image; empty before the first depth_ready. Valid until the next push.
+    /// The newest depth image; no depth in any pixel before the first depth_ready. Valid until the
+    /// next push.
     [[nodiscard]] const DepthFrame& depth() const noexcept;
 
     /// Gives OrderSource::depth_image its depth: pixels of the same camera, 0 = unknown there.
     /// @param depth copied; @return invalid_argument on another size or a unit that is not positive
     Result<void> set_order_depth(ImageView<const std::uint16_t> depth, double unit_mm);
 
-    /// Phase and modulation of the shortest period; empty without DecodeSettings::keep_maps, and
-    /// the phase also for a Gray code without sines. Valid until the next push.
+    /// Phase and modulation of the shortest period, set by the first depth_ready; empty without
+    /// DecodeSettings::keep_maps, and the phase also for a Gray code without sines. Valid until the
+    /// next push, as are the two below.
     [[nodiscard]] const PhaseMap& phase() const noexcept;
     /// Absolute coordinate along the coded axis, projector px (as shown, lens included), NaN where
     /// there is none; empty without keep_maps or without an order.
     [[nodiscard]] const Image<float>& coordinate_px() const noexcept;
     /// The scene without its fringes: mean of the images of the shortest period (or of white and
-    /// black), grey levels; empty without keep_maps.
+    /// black, or of a bit and its inverse), grey levels; empty without keep_maps.
     [[nodiscard]] const Image<float>& average() const noexcept;
 
     /// Forgets all frames, as after a cut; settings and the order depth stay.

@@ -50,6 +50,13 @@ TEST(DecodePlan, RefusesSequencesThatItHasNoMethodFor) {
     taps.taps = PhaseTaps::three_plus_two;
     says(refusal(dual_sequence(Axis::x, kProjector, 512.0, 64.0), taps), ErrorCode::unsupported,
          "least_squares");
+    PatternSequence code = gray_code_sequence(Axis::x, kProjector, 32.0);
+    std::erase_if(code.patterns, [](const Pattern& p) { return p.kind == PatternKind::sine; });
+    for (const OrderSource order : {OrderSource::none, OrderSource::depth_image}) {
+        DecodeSettings other_order;
+        other_order.order = order;
+        says(refusal(code, other_order), ErrorCode::unsupported, "Gray code without sines");
+    }
 }
 
 TEST(DecodePlan, RefusesSettingsOutOfTheirRange) {

@@ -215,6 +215,39 @@ TEST(DepthDecoder, KeepsItsMapsOnRequest) {
     EXPECT_TRUE(make(dual()).coordinate_px().empty());
 }
 
+// Black, white, then the bits; instead of black and white, every bit once more, inverted.
+PatternSequence gray_with_inverses() {
+    PatternSequence sequence = gray_code_sequence(Axis::x, {512, 384}, 32.0);
+    std::erase_if(sequence.patterns,
+                  [](const Pattern& p) { return p.kind != PatternKind::gray_code; });
+    const std::size_t bits = sequence.patterns.size();
+    for (std::size_t bit = 0; bit < bits; ++bit) {
+        Pattern inverse = sequence.patterns[bit];
+        inverse.inverted = true;
+        sequence.patterns.push_back(inverse);
+    }
+    return sequence;
+}
+
+TEST(DepthDecoder, AveragesABitAndItsInverseWhereNoFlatIs) {
+    DecodeSettings settings;
+    settings.keep_maps = true;
+    const PatternSequence patterns = gray_with_inverses();
+    DepthDecoder decoder = make(patterns, settings);
+    for (int n = 0; n < decoder.frames_needed(); ++n) {
+        decoder.push(plane_frame(plane_rig(), patterns, n, n, kWall));
+    }
+    for (int x = 0; x < 96; ++x) {
+        ASSERT_EQ(decoder.average().at(x, 30), 120.0F) << x;
+    }
+    EXPECT_GT(score(decoder.depth(), kWall).good, 0.0);
+}
+
+TEST(DepthDecoder, HasNoDepthBeforeItsFirst) {
+    const DepthDecoder decoder = make(wide());
+    EXPECT_DOUBLE_EQ(score(decoder.depth(), kWall).none, 1.0);
+}
+
 TEST(DepthDecoder, DecodesPhaseAloneWithoutARig) {
     DecodeSettings settings;
     settings.order = OrderSource::none;
