@@ -96,10 +96,9 @@ const FrameWindow::Entry* FrameWindow::fullest(int pattern, int shows_ago) const
     return best;
 }
 
-const Frame* FrameWindow::held(int pattern) const noexcept {
+const FrameWindow::Entry* FrameWindow::held(int pattern) const noexcept {
     const Slot& entries = slot(pattern);
-    return entries[1].frame && entries[1].show == entries[0].show ? entries[1].frame.get()
-                                                                  : nullptr;
+    return entries[1].frame && entries[1].show == entries[0].show ? &entries[1] : nullptr;
 }
 
 const Frame* FrameWindow::clean(int pattern, int y) const noexcept {

@@ -48,7 +48,7 @@ class FrameWindow {
     /// if there is none.
     [[nodiscard]] const Entry* fullest(int pattern, int shows_ago) const noexcept;
     /// The frame before the newest of a pattern, of the same show; null if there is none.
-    [[nodiscard]] const Frame* held(int pattern) const noexcept;
+    [[nodiscard]] const Entry* held(int pattern) const noexcept;
     /// Frames of the show before the newest one, whatever its pattern.
     [[nodiscard]] int frames_of_last_show() const noexcept { return last_show_frames_; }
 

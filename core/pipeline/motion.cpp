@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include <xtrack/pattern.hpp>
+
 #include "core/pipeline/motion_pixels.hpp"
 
 namespace xtrack {
@@ -22,7 +24,7 @@ constexpr double kMinMovingShare = 0.002;
 constexpr float kFollowAdvantage = 1.0F;
 // Images of a cycle that is over before a hand changes its speed.
 constexpr int kShortCycle = 4;
-// A hand's: 2 m in a second, squared, at 1 px a mm; px / s^2.
+// A hand's: from rest to 2 m/s in 0.2 s, at 1 px a mm; px / s^2.
 constexpr float kMaxAcceleration_px = 10000.0F;
 // Pixels that are summed of a cell: every other row.
 constexpr unsigned kCellSamples = MotionEstimator::kCellPx * MotionEstimator::kCellPx / 2;
@@ -55,7 +57,7 @@ MotionEstimator::MotionEstimator(Size image, int patterns, const Settings& setti
             small.cells.resize(w, h);
         }
     }
-    for (Image<std::uint8_t>* cells : {&age_, &active_, &follows_}) {
+    for (Image<std::uint8_t>* cells : {&age_, &follows_}) {
         *cells = Image<std::uint8_t>(w, h, 0);
     }
     still_cost_.resize(w, h);
@@ -69,8 +71,10 @@ void MotionEstimator::clear() noexcept {
     for (auto& slot : small_) {
         for (Small& small : slot) {
             small.frame = nullptr;
+            small.count = 0;
         }
     }
+    pairs_.clear();
     age_.fill(0);
     follows_.fill(0);
     std::fill(row_disturbed_.begin(), row_disturbed_.end(), std::uint8_t{0});
@@ -118,17 +122,21 @@ MotionEstimator::Small& MotionEstimator::take_small(const FrameWindow& window,
     for (Small& small : slot) {
         const bool used = std::any_of(
             entries.begin(), entries.end(),
-            [&](const FrameWindow::Entry& entry) { return entry.frame.get() == small.frame; });
-        if (small.frame == nullptr || !used) {
+            [&](const FrameWindow::Entry& entry) { return entry.count == small.count; });
+        if (small.count == 0 || !used) {
             return small;
         }
     }
     return slot.back();
 }
 
-const MotionEstimator::Small* MotionEstimator::find_small(const Frame& frame) const noexcept {
-    for (const Small& small : small_[static_cast<std::size_t>(frame.pattern)]) {
-        if (small.frame == &frame) {
+const MotionEstimator::Small* MotionEstimator::find_small(
+    const FrameWindow::Entry* entry) const noexcept {
+    if (entry == nullptr) {
+        return nullptr;
+    }
+    for (const Small& small : small_[static_cast<std::size_t>(entry->frame->pattern)]) {
+        if (small.count == entry->count) {
             return &small;
         }
     }
@@ -198,7 +206,10 @@ Vec2f MotionEstimator::path_since(const Frame& frame) const noexcept {
 }
 
 Shift MotionEstimator::to(const Frame& frame) const noexcept {
-    const Vec2f path = path_since(frame);
+    // A path that leaves every image is as good as any other that does; stamps that are far apart,
+    // or all but equal, lead beyond what an int holds.
+    constexpr auto kFarthest_px = static_cast<float>(4 * kMaxImageSide_px);
+    const Vec2f path = path_since(frame).cwiseMax(-kFarthest_px).cwiseMin(kFarthest_px);
     return {-static_cast<int>(std::lround(path.x())), -static_cast<int>(std::lround(path.y()))};
 }
 
@@ -265,15 +276,17 @@ void MotionEstimator::update(const FrameWindow& window, const Frame& newest) noe
     Small& small = take_small(window, newest.pattern);
     shrink(newest, small.cells);
     small.frame = &newest;
+    small.count = window.entries(newest.pattern)[0].count;
     now_ = newest.stamp;
     moving_ = false;
     pairs_.clear();  // they point to frames that the window may have let go
     age_cells();
-    const auto comparable = [&](const Frame* frame) -> const Small* {
-        return frame != nullptr && frame->stamp < newest.stamp ? find_small(*frame) : nullptr;
+    const auto comparable = [&](const FrameWindow::Entry* entry) -> const Small* {
+        const Small* found = find_small(entry);
+        return found != nullptr && found->frame->stamp < newest.stamp ? found : nullptr;
     };
     const FrameWindow::Entry* last = window.fullest(newest.pattern, 1);
-    const Small* cycle = last == nullptr ? nullptr : comparable(last->frame.get());
+    const Small* cycle = comparable(last);
     const Small* show = comparable(window.held(newest.pattern));
     const bool held = show != nullptr || window.frames_of_last_show() > 1;
     if (held != held_) {
@@ -342,7 +355,8 @@ void MotionEstimator::pair_images(const FrameWindow& window) noexcept {
              to_seconds(now_ - now->frame->stamp) < 0.5 * seconds_per_cycle_)) {
             add(now->frame.get(), before->frame.get());
         }
-        add(window.newest(pattern), window.held(pattern));
+        const FrameWindow::Entry* held = window.held(pattern);
+        add(window.newest(pattern), held == nullptr ? nullptr : held->frame.get());
     }
 }
 

@@ -74,15 +74,18 @@ class MotionEstimator {
     [[nodiscard]] int cells_y() const noexcept { return age_.height(); }
 
  private:
+    // Means of cells. Found again by the frame's count in the window: another frame may come to
+    // lie where one was that the window let go.
     struct Small {
         Image<std::uint8_t> cells;
-        const Frame* frame = nullptr;
+        const Frame* frame = nullptr;  // the window holds it while its count is there
+        std::uint64_t count = 0;       // 0: empty
     };
     using SmallSlot = std::array<Small, FrameWindow::kDepth + 1>;  // one more than the window keeps
     void shrink(const Frame& frame, Image<std::uint8_t>& cells) const noexcept;
     [[nodiscard]] Small& take_small(const FrameWindow& window, int pattern) noexcept;
-    /// Null when the frame was not shrunk.
-    [[nodiscard]] const Small* find_small(const Frame& frame) const noexcept;
+    /// Null when there is no such entry, or its frame was not shrunk.
+    [[nodiscard]] const Small* find_small(const FrameWindow::Entry* entry) const noexcept;
     /// Lists the cells that differ and makes them young.
     void mark_moving(const Small& now, const Small& before, int lifetime) noexcept;
     void age_cells() noexcept;
@@ -112,8 +115,7 @@ class MotionEstimator {
     Vec2f acceleration_ = Vec2f::Zero();
     Vec2f centre_ = Vec2f::Zero();
     std::vector<SmallSlot> small_;
-    Image<std::uint8_t> age_;     // pushes for which a cell stays disturbed
-    Image<std::uint8_t> active_;  // moved between the newest two images of one pattern
+    Image<std::uint8_t> age_;  // pushes for which a cell stays disturbed
     Image<std::uint8_t> follows_;
     Image<float> still_cost_, follow_cost_;
     std::vector<std::uint8_t> row_disturbed_;

@@ -23,8 +23,12 @@ constexpr float kExpectedAdvantage = 0.3F;
 Shift MotionEstimator::search_cells(const Small& now, const Small& before,
                                     double seconds) const noexcept {
     const int reach = settings_.max_shift_px / kCellPx;
+    // No farther than the search goes: the cost of being far from it must fit an int.
+    const auto farthest = static_cast<float>(settings_.max_shift_px);
     const Vec2f expected = history_count_ > 0
-                               ? Vec2f(-history_[0].velocity * static_cast<float>(seconds))
+                               ? Vec2f((-history_[0].velocity * static_cast<float>(seconds))
+                                           .cwiseMax(-farthest)
+                                           .cwiseMin(farthest))
                                : Vec2f(Vec2f::Zero());
     Shift best;
     int best_cost = std::numeric_limits<int>::max();

@@ -22,9 +22,11 @@ double DepthDecoder::Impl::find_moving_depth_mm() noexcept {
     constexpr int kCell = MotionEstimator::kCellPx;
     for (int cy = 0; cy < motion->cells_y(); ++cy) {
         for (int cx = 0; cx < motion->cells_x(); ++cx) {
-            const std::uint16_t z = motion->follows(cx, cy) ? depth.depth.at(cx * kCell + kCell / 2,
-                                                                             cy * kCell + kCell / 2)
-                                                            : std::uint16_t{0};
+            // The only cell of an image narrower than a cell may end before its centre.
+            const int x = std::min(cx * kCell + kCell / 2, size.width - 1);
+            const int y = std::min(cy * kCell + kCell / 2, size.height - 1);
+            const std::uint16_t z =
+                motion->follows(cx, cy) ? depth.depth.at(x, y) : std::uint16_t{0};
             if (z > 0) {
                 moving_depths.push_back(z);
             }

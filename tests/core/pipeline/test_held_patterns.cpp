@@ -82,7 +82,7 @@ TEST(HeldPatterns, TheWindowKeepsTheRowsOfTwoShowsAndNoMore) {
     EXPECT_EQ(entries[1].frame->sequence, 18U);
     EXPECT_EQ(entries[2].frame->sequence, 13U);
     EXPECT_FALSE(entries[3].frame);
-    EXPECT_EQ(window.held(0)->sequence, 18U);
+    EXPECT_EQ(window.held(0)->frame->sequence, 18U);
     EXPECT_EQ(window.fullest(0, 1)->frame->sequence, 13U);
     EXPECT_EQ(window.frames_of_last_show(), 2);
     std::array<const Frame*, FrameWindow::kFramesPerShow> frames{};

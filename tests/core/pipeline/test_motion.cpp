@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/motion.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <xtrack/depth_decoder.hpp>
+
+#include "core/pipeline/frame_window.hpp"
+#include "tests/core/pipeline/plane_scene.hpp"
+
+namespace xtrack {
+namespace {
+
+using test::plane_frame;
+using test::plane_rig;
+
+PatternSequence wide() { return three_step_sequence(Axis::x, {512, 384}, 512.0); }
+
+// What a camera's pool does: frames that are lent in turn, whose pixels are not what they were once
+// they are given back.
+class NineFrames {
+ public:
+    FramePtr lend(const Frame& content) {
+        Frame& frame = frames_[next_++ % frames_.size()];
+        frame = content;
+        return {&frame, [](Frame* back) { back->pixels.fill(255); }};
+    }
+
+ private:
+    std::array<Frame, 9> frames_;
+    std::size_t next_ = 0;
+};
+
+TEST(Motion, AFrameIsNotTakenForTheOneThatLayThereBefore) {
+    const Rig rig = plane_rig();
+    FrameWindow window(3);
+    MotionEstimator motion(rig.camera.size, 3, {});
+    int pushed = 0;
+    const auto push = [&](int pattern, Frame& place, double z_mm, int row_begin, int row_end) {
+        place = *plane_frame(rig, wide(), pattern, pushed++, z_mm);
+        place.clean_row_begin = row_begin;
+        place.clean_row_end = row_end;
+        const FramePtr frame(&place, [](const Frame*) {});
+        window.push(frame);
+        motion.update(window, *frame);
+    };
+    std::array<Frame, 2> other;
+    const auto show_another = [&] {
+        for (int n = 0; n < 100; ++n) {
+            push(1, other[static_cast<std::size_t>(n % 2)], 700.0, 0, 64);
+        }
+    };
+    // Two shows of two images each, with the scene's one change between. The next show, of one
+    // image, frees the places of the first; the one after that lies where its second image was.
+    std::array<Frame, 6> places;
+    push(0, places[0], 600.0, 0, 32);
+    push(0, places[1], 600.0, 32, 64);
+    show_another();
+    push(0, places[2], 700.0, 0, 32);
+    push(0, places[3], 700.0, 32, 64);
+    EXPECT_TRUE(motion.row_disturbed(5));
+    show_another();
+    push(0, places[4], 700.0, 0, 64);
+    show_another();
+    push(0, places[1], 700.0, 0, 64);
+    show_another();
+    push(0, places[5], 700.0, 0, 64);
+    for (int cx = 0; cx < motion.cells_x(); ++cx) {
+        EXPECT_FALSE(motion.disturbed(cx, 5)) << cx;
+    }
+}
+
+TEST(Motion, ReadsNoFrameThatTheWindowGaveBack) {
+    NineFrames lent;
+    std::vector<FramePtr> kept;
+    auto from_lent = DepthDecoder::create(plane_rig(), wide(), plane_rig().camera.size, {});
+    auto from_kept = DepthDecoder::create(plane_rig(), wide(), plane_rig().camera.size, {});
+    ASSERT_TRUE(from_lent && from_kept);
+    for (int n = 0; n < 15; ++n) {
+        const auto frame =
+            plane_frame(plane_rig(), wide(), n % 3, n, 600.0 + 30.0 * std::min(n, 8));
+        // From here on all have one stamp, and no two can be compared.
+        frame->stamp = Stamp::from_us(10000 * std::min(n, 8));
+        kept.push_back(frame);
+        from_kept->push(frame);
+        from_lent->push(lent.lend(*frame));
+        for (int y = 0; y < from_kept->depth().depth.height(); ++y) {
+            const std::uint16_t* expected = from_kept->depth().depth.row(y);
+            ASSERT_TRUE(std::equal(expected, expected + 96, from_lent->depth().depth.row(y)))
+                << "frame " << n << " row " << y;
+        }
+    }
+}
+
+// A bright stripe on black that moves down the image.
+std::shared_ptr<Frame> stripe_frame(const Rig& rig, int n, int top) {
+    auto frame = plane_frame(rig, wide(), n % 3, n, 700.0);
+    for (int y = 0; y < frame->pixels.height(); ++y) {
+        if (y < top || y >= top + 24) {
+            std::fill_n(frame->pixels.row(y), frame->pixels.width(), std::uint8_t{0});
+        }
+    }
+    return frame;
+}
+
+TEST(Motion, ImagesMayBeNarrowerThanACell) {
+    const Rig rig = plane_rig({4, 96});
+    auto decoder = DepthDecoder::create(rig, wide(), rig.camera.size, {});
+    ASSERT_TRUE(decoder) << decoder.error().message;
+    for (int n = 0; n < 18; ++n) {
+        const DecodeStatus status = decoder->push(stripe_frame(rig, n, 10 + 2 * n));
+        EXPECT_EQ(status.state, n < 2 ? DecodeState::need_more : DecodeState::depth_ready);
+    }
+}
+
+TEST(Motion, StampsThatAreAgesApartOrAllButEqualAreBorne) {
+    const Rig rig = plane_rig({64, 96});
+    constexpr int kFarthest_px = 4 * kMaxImageSide_px;
+    int far = 0;
+    for (const int first_of_late : {4, 7, 8, 9, 10}) {
+        FrameWindow window(3);
+        MotionEstimator motion(rig.camera.size, 3, {});
+        Stamp stamp;
+        for (int n = 0; n < 18; ++n) {
+            const auto frame = stripe_frame(rig, n, 10 + 2 * n);
+            // A nanosecond from image to image, then a century, after which the third pattern is
+            // not seen again.
+            if (n > first_of_late && n % 3 == 2) {
+                continue;
+            }
+            stamp = stamp + (n == first_of_late ? std::chrono::hours(24 * 36500) : Duration{1});
+            frame->stamp = stamp;
+            window.push(frame);
+            motion.update(window, *frame);
+            for (int pattern = 0; pattern < 3; ++pattern) {
+                if (const Frame* image = window.newest(pattern)) {
+                    // Some images away at most, not somewhere an overflow leads.
+                    const float path =
+                        std::clamp(motion.path_since(*image).y(), -static_cast<float>(kFarthest_px),
+                                   static_cast<float>(kFarthest_px));
+                    EXPECT_EQ(motion.to(*image).dy, -static_cast<int>(std::lround(path)));
+                    far += std::fabs(path) == static_cast<float>(kFarthest_px) ? 1 : 0;
+                }
+            }
+        }
+    }
+    EXPECT_GT(far, 0);
+}
+
+}  // namespace
+}  // namespace xtrack
