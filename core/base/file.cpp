@@ -2,6 +2,7 @@
 #include "core/base/file.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdint>
 #include <fstream>
 #include <random>
@@ -39,12 +40,11 @@ fs::path without_trailing_slash(const fs::path& path) {
 
 Result<void> write_plainly(const fs::path& path, std::string_view bytes) {
     std::ofstream out(path, std::ios::binary | std::ios::trunc);
-    std::error_code error;
-    fs::permissions(path, fs::perms::owner_read | fs::perms::owner_write, error);
     out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     out.close();
-    if (!out || error) {
-        return io_error(path, "cannot be written; is the disk full or the folder read-only?");
+    if (!out) {
+        return io_error(
+            path, "cannot be written; is its folder there and writable, and the disk not full?");
     }
     return {};
 }
@@ -79,12 +79,30 @@ Result<std::string> read_file(const fs::path& path, std::size_t max_bytes) {
     return bytes;
 }
 
+Result<std::string> read_start(const fs::path& path, std::size_t bytes) {
+    errno = 0;
+    std::ifstream in(path, std::ios::binary);
+    if (!in) {
+        const std::error_code why(errno, std::generic_category());
+        return io_error(path, "cannot be opened" + (why ? ": " + why.message() : std::string()) +
+                                  "; check the path and its permissions");
+    }
+    std::string start(bytes, '\0');
+    in.read(start.data(), static_cast<std::streamsize>(bytes));
+    if (in.bad()) {
+        return io_error(path, "cannot be read; is the disk in order?");
+    }
+    start.resize(static_cast<std::size_t>(in.gcount()));
+    return start;
+}
+
 Result<void> write_file(const fs::path& path, std::string_view bytes) {
     const fs::path temporary = temporary_beside(path);
     std::error_code error;
     if (auto ok = write_plainly(temporary, bytes); !ok) {
         fs::remove(temporary, error);
-        return io_error(path, "cannot be written; is the disk full or the folder read-only?");
+        return io_error(
+            path, "cannot be written; is its folder there and writable, and the disk not full?");
     }
     fs::rename(temporary, path, error);
     if (error) {
@@ -116,7 +134,6 @@ Result<NewFolder> NewFolder::create(const fs::path& target) {
         const fs::path temporary = temporary_beside(folder.target_);
         if (fs::create_directory(temporary, error)) {
             folder.temporary_ = temporary;
-            fs::permissions(temporary, fs::perms::owner_all, error);
             return folder;
         }
         if (error) {

@@ -15,8 +15,11 @@ namespace xtrack::base {
 [[nodiscard]] Result<std::string> read_file(const std::filesystem::path& path,
                                             std::size_t max_bytes);
 
-/// Writes a file so that it is there whole or not at all: into a temporary one beside it, readable
-/// by its owner alone, which then takes the name. An existing file is replaced.
+/// The first `bytes` bytes of a file, fewer where it is shorter. Messages name the file.
+[[nodiscard]] Result<std::string> read_start(const std::filesystem::path& path, std::size_t bytes);
+
+/// Writes a file so that it is there whole or not at all: into a temporary one beside it, which
+/// then takes the name. An existing file is replaced. Who may read it is the umask's business.
 [[nodiscard]] Result<void> write_file(const std::filesystem::path& path, std::string_view bytes);
 
 /// A folder that appears whole or not at all: filled under a temporary name beside its target, and
@@ -41,7 +44,7 @@ class NewFolder {
 
     /// Makes a folder inside.
     [[nodiscard]] Result<void> make_folder(const std::filesystem::path& inside) const;
-    /// Writes a file inside, readable by its owner alone.
+    /// Writes a file inside.
     [[nodiscard]] Result<void> write(const std::filesystem::path& inside,
                                      std::string_view bytes) const;
     /// Gives the folder its name. @return an Error if something has appeared there meanwhile, which

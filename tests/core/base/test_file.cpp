@@ -29,15 +29,25 @@ class FileTest : public testing::Test {
     fs::path folder_;
 };
 
-TEST_F(FileTest, WritesWholeAndForTheOwnerAlone) {
+TEST_F(FileTest, WritesWholeAndForWhomTheUmaskSays) {
     const fs::path file = folder_ / "a.txt";
     ASSERT_TRUE(write_file(file, "one").ok());
     ASSERT_TRUE(write_file(file, "two").ok());
     EXPECT_EQ(*read_file(file, 3), "two");
     EXPECT_EQ(entries(), 1U);
-#ifndef _WIN32
-    EXPECT_EQ(fs::status(file).permissions(), fs::perms::owner_read | fs::perms::owner_write);
-#endif
+    const fs::path plain = folder_ / "plain.txt";
+    std::ofstream(plain) << "x";
+    EXPECT_EQ(fs::status(file).permissions(), fs::status(plain).permissions());
+    auto made = NewFolder::create(folder_ / "out");
+    ASSERT_TRUE(made.ok());
+    ASSERT_TRUE(made->make_folder("in").ok());
+    ASSERT_TRUE(made->write("in/b.txt", "x").ok());
+    ASSERT_TRUE(made->commit().ok());
+    fs::create_directory(folder_ / "plain");
+    const fs::perms of_folder = fs::status(folder_ / "plain").permissions();
+    EXPECT_EQ(fs::status(folder_ / "out").permissions(), of_folder);
+    EXPECT_EQ(fs::status(folder_ / "out/in").permissions(), of_folder);
+    EXPECT_EQ(fs::status(folder_ / "out/in/b.txt").permissions(), fs::status(plain).permissions());
 }
 
 TEST_F(FileTest, RefusesWhatItCannotRead) {
@@ -48,6 +58,16 @@ TEST_F(FileTest, RefusesWhatItCannotRead) {
     EXPECT_EQ(read_file(folder_ / "none", 4).error().code, ErrorCode::not_found);
     EXPECT_EQ(read_file(folder_, 4).error().code, ErrorCode::io);
     EXPECT_FALSE(write_file(folder_ / "none" / "a", "x").ok());
+}
+
+TEST_F(FileTest, ReadsTheStartOfAFile) {
+    ASSERT_TRUE(write_file(folder_ / "a", "12345").ok());
+    EXPECT_EQ(*read_start(folder_ / "a", 3), "123");
+    EXPECT_EQ(*read_start(folder_ / "a", 9), "12345");
+    const auto none = read_start(folder_ / "none", 3);
+    ASSERT_FALSE(none.ok());
+    EXPECT_EQ(none.error().code, ErrorCode::io);
+    EXPECT_THAT(none.error().message, HasSubstr("none: cannot be opened: No such file"));
 }
 
 TEST_F(FileTest, NewFolderAppearsAtCommit) {

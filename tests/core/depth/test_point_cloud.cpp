@@ -66,8 +66,19 @@ TEST(PointCloud, WritesBinaryPly) {
     // 400.5 = 0x43C84000, least byte first.
     EXPECT_EQ(bytes.substr(body + 8, 4), std::string("\x00\x40\xC8\x43", 4));
     EXPECT_EQ(bytes.back(), '\xFF');
-    EXPECT_FALSE(std::filesystem::exists(file.string() + ".part"));
     std::filesystem::remove(file);
+}
+
+TEST(PointCloud, TouchesNoFileButItsOwn) {
+    const std::filesystem::path file =
+        std::filesystem::path(testing::TempDir()) / "xtrack_test_own.ply";
+    std::ofstream(file.string() + ".part") << "mine";
+    ASSERT_TRUE(write_ply(PointCloud{}, file));
+    std::string kept;
+    std::ifstream(file.string() + ".part") >> kept;
+    EXPECT_EQ(kept, "mine");
+    std::filesystem::remove(file);
+    std::filesystem::remove(file.string() + ".part");
 }
 
 TEST(PointCloud, SaysWhichFileCannotBeWritten) {
