@@ -9,6 +9,7 @@ namespace xtrack::base {
 
 namespace {
 
+constexpr std::int64_t kMaxTime_us = std::int64_t{100} * 366 * 24 * 3600 * 1'000'000;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 }  // namespace
@@ -74,7 +75,7 @@ Result<bool> CsvReader::next() {
         return error("comes after " + std::to_string(limits_.rows) + " rows; split the recording");
     }
     split(line, fields_);
-    if (fields_.size() > header_.size()) {
+    if (fields_.size() != header_.size()) {
         return error("has " + std::to_string(fields_.size()) + " fields, the header has " +
                      std::to_string(header_.size()) + "; make them agree");
     }
@@ -102,6 +103,19 @@ Result<double> CsvReader::number_field(std::size_t column, double low, double hi
                         "give a number from " + number_text(low) + " to " + number_text(high));
     }
     return *value;
+}
+
+Result<Stamp> CsvReader::stamp_field(std::size_t column, std::optional<Stamp> last) const {
+    const auto us = int_field(column, -kMaxTime_us, kMaxTime_us);
+    if (!us) {
+        return us.error();
+    }
+    const Stamp stamp = Stamp::from_us(*us);
+    if (last && stamp < *last) {
+        return error_at(column,
+                        "time goes backwards, sort the rows by " + std::string(header_[column]));
+    }
+    return stamp;
 }
 
 Error CsvReader::error_at(std::size_t column, std::string_view mend) const {

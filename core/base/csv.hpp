@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <xtrack/result.hpp>
+#include <xtrack/stamp.hpp>
 
 namespace xtrack::base {
 
@@ -35,14 +36,19 @@ class CsvReader {
     /// The same, or an Error that says which column is missing.
     [[nodiscard]] Result<std::size_t> required_column(std::string_view name) const;
 
-    /// Goes to the next row. @return false at the end of the text
+    /// Goes to the next row. @return false at the end of the text; an Error where its fields are
+    /// not
+    ///         as many as the header's: a torn row must not pass for one with empty fields
     [[nodiscard]] Result<bool> next();
 
-    /// A field of the present row without blanks around it; empty if the row ends before it.
+    /// A field of the present row without blanks around it; empty before the first row.
     [[nodiscard]] std::string_view field(std::size_t column) const noexcept;
     [[nodiscard]] Result<std::int64_t> int_field(std::size_t column, std::int64_t low,
                                                  std::int64_t high) const;
     [[nodiscard]] Result<double> number_field(std::size_t column, double low, double high) const;
+    /// Microseconds, at most a century from zero: far below what overflows once it is counted in
+    /// nanoseconds. @return an Error also where it is before `last`
+    [[nodiscard]] Result<Stamp> stamp_field(std::size_t column, std::optional<Stamp> last) const;
 
     /// "frames.csv line 7: pattern is '9'; <mend>"
     [[nodiscard]] Error error_at(std::size_t column, std::string_view mend) const;

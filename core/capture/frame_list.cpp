@@ -2,6 +2,7 @@
 #include "core/capture/frame_list.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "core/base/csv.hpp"
 #include "core/base/file.hpp"
@@ -11,8 +12,6 @@ namespace xtrack::capture {
 namespace {
 
 constexpr base::CsvLimits kLimits{1024, 1'000'000, 32};
-// A century: far below what overflows once it is counted in nanoseconds.
-constexpr std::int64_t kMaxTime_us = std::int64_t{100} * 366 * 24 * 3600 * 1'000'000;
 constexpr std::int64_t kMaxSequence = std::int64_t{1} << 53U;
 
 bool is_image_name(std::string_view file) {
@@ -57,7 +56,7 @@ Result<Columns> find_columns(const base::CsvReader& csv, bool with_patterns) {
 }
 
 Result<RecordingEntry> read_entry(const base::CsvReader& csv, const Columns& columns,
-                                  std::size_t patterns) {
+                                  std::size_t patterns, std::optional<Stamp> last) {
     RecordingEntry entry;
     entry.file = std::string(csv.field(columns.file));
     if (!base::stays_inside(entry.file)) {
@@ -66,11 +65,11 @@ Result<RecordingEntry> read_entry(const base::CsvReader& csv, const Columns& col
     if (!is_image_name(entry.file)) {
         return csv.error_at(columns.file, "name a png or jpg image");
     }
-    const auto t_us = csv.int_field(columns.t_us, -kMaxTime_us, kMaxTime_us);
-    if (!t_us) {
-        return t_us.error();
+    const auto stamp = csv.stamp_field(columns.t_us, last);
+    if (!stamp) {
+        return stamp.error();
     }
-    entry.stamp = Stamp::from_us(*t_us);
+    entry.stamp = *stamp;
     const auto sequence = csv.int_field(columns.sequence, 0, kMaxSequence);
     if (!sequence) {
         return sequence.error();
@@ -100,6 +99,7 @@ Result<std::vector<RecordingEntry>> parse_frame_list(std::string_view text, cons
         return columns.error();
     }
     std::vector<RecordingEntry> entries;
+    std::optional<Stamp> last;
     while (true) {
         const auto more = csv->next();
         if (!more) {
@@ -108,13 +108,11 @@ Result<std::vector<RecordingEntry>> parse_frame_list(std::string_view text, cons
         if (!*more) {
             break;
         }
-        auto entry = read_entry(*csv, *columns, patterns);
+        auto entry = read_entry(*csv, *columns, patterns, last);
         if (!entry) {
             return entry.error();
         }
-        if (!entries.empty() && entry->stamp < entries.back().stamp) {
-            return csv->error_at(columns->t_us, "time goes backwards, sort the rows by t_us");
-        }
+        last = entry->stamp;
         entries.push_back(std::move(*entry));
     }
     if (entries.empty()) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <xtrack/joint_recording.hpp>
 
+#include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstdio>
+#include <charconv>
 #include <limits>
 #include <optional>
 
@@ -15,9 +15,10 @@ namespace xtrack {
 namespace {
 
 constexpr std::size_t kMaxFileBytes = std::size_t{256} << 20U;
-constexpr base::CsvLimits kLimits{8192, 1'000'000, 256};
+// An hour at 60 frames a second: a frame takes over a kilobyte, with a hand in it or not.
+constexpr std::size_t kMaxFrames = 250'000;
+constexpr base::CsvLimits kLimits{8192, kMaxHands* kMaxFrames, 256};
 constexpr double kMaxPosition_mm = 1e5;
-constexpr std::int64_t kMaxTime_us = std::int64_t{100} * 366 * 24 * 3600 * 1'000'000;
 
 struct Columns {
     std::size_t t_us = 0;
@@ -148,6 +149,9 @@ Result<std::vector<HandFrame>> parse_joint_recording(std::string_view text,
         return columns.error();
     }
     std::vector<HandFrame> frames;
+    // Doubling would take twice the memory of a long recording.
+    frames.reserve(
+        std::min(kMaxFrames, static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'))));
     while (true) {
         const auto more = csv->next();
         if (!more) {
@@ -156,17 +160,19 @@ Result<std::vector<HandFrame>> parse_joint_recording(std::string_view text,
         if (!*more) {
             break;
         }
-        const auto t_us = csv->int_field(columns->t_us, -kMaxTime_us, kMaxTime_us);
-        if (!t_us) {
-            return t_us.error();
+        const auto stamp = csv->stamp_field(
+            columns->t_us,
+            frames.empty() ? std::nullopt : std::optional<Stamp>(frames.back().stamp));
+        if (!stamp) {
+            return stamp.error();
         }
-        const Stamp stamp = Stamp::from_us(*t_us);
-        if (!frames.empty() && stamp < frames.back().stamp) {
-            return csv->error_at(columns->t_us, "time goes backwards, sort the rows by t_us");
-        }
-        if (frames.empty() || stamp != frames.back().stamp) {
+        if (frames.empty() || *stamp != frames.back().stamp) {
+            if (frames.size() == kMaxFrames) {
+                return csv->error("comes after " + std::to_string(kMaxFrames) +
+                                  " frames; split the recording");
+            }
             HandFrame frame;
-            frame.stamp = stamp;
+            frame.stamp = *stamp;
             frame.coordinates = CoordinateFrame::interaction;
             frames.push_back(frame);
         }
@@ -188,6 +194,19 @@ Result<std::vector<HandFrame>> read_joint_recording(const std::filesystem::path&
     return parse_joint_recording(*text, file.string());
 }
 
+namespace {
+
+// A comma and a number with a point, whatever the program's locale has in its place.
+void append(std::string& text, float value, int digits) {
+    std::array<char, 64> number{};
+    const auto end = std::to_chars(number.data(), number.data() + number.size(),
+                                   static_cast<double>(value), std::chars_format::fixed, digits);
+    text += ',';
+    text.append(number.data(), end.ptr);
+}
+
+}  // namespace
+
 std::string joint_recording_text(std::span<const HandFrame> frames) {
     std::string text = "t_us,hand,hand_id,confidence";
     for (std::size_t j = 0; j < kJointCount; ++j) {
@@ -196,25 +215,21 @@ std::string joint_recording_text(std::span<const HandFrame> frames) {
         }
     }
     text += '\n';
-    std::array<char, 64> number{};
     for (const HandFrame& frame : frames) {
         const std::string t = std::to_string(frame.stamp.us());
         if (frame.count == 0) {
             text += t + ",,," + std::string(3 * kJointCount, ',') + "\n";
         }
         for (const Hand& hand : frame.all()) {
-            std::snprintf(number.data(), number.size(), ",%d,%.3f", hand.id,
-                          static_cast<double>(hand.confidence));
-            text += t + "," + to_string(hand.chirality) + number.data();
+            text += t + "," + to_string(hand.chirality) + "," + std::to_string(hand.id);
+            append(text, hand.confidence, 3);
             for (const TrackedPoint& joint : hand.joints) {
                 if (!joint.valid) {
                     text += ",,,";
                     continue;
                 }
                 for (Eigen::Index axis = 0; axis < 3; ++axis) {
-                    std::snprintf(number.data(), number.size(), ",%.2f",
-                                  static_cast<double>(joint.position_mm[axis]));
-                    text += number.data();
+                    append(text, joint.position_mm[axis], 2);
                 }
             }
             text += '\n';

@@ -19,8 +19,8 @@ namespace xtrack {
 /// missing. Coordinates are the interaction frame's.
 /// @return an Error that names the line and field: NaN, infinity or over 100 m, time that goes
 ///         backwards, more than kMaxHands hands or one hand_id twice in a moment (refused, not cut:
-///         a reader that chose two would hide a broken tracker), a missing column, no line at all,
-///         a file over 256 MiB
+///         a reader that chose two would hide a broken tracker), a missing column, a row of fewer
+///         fields than the header has, no line at all, over 250 000 moments, a file over 256 MiB
 /// @thread any
 /// @since 0.1
 [[nodiscard]] Result<std::vector<HandFrame>> read_joint_recording(

@@ -40,7 +40,7 @@ TEST(Labels, BadRowsAreNamed) {
     EXPECT_THAT(message_of("a b,right,1,2,\n"), HasSubstr("gesture is 'a b'"));
     EXPECT_THAT(message_of("push,right,nan,2,\n"), HasSubstr("start_us is 'nan'"));
     EXPECT_THAT(message_of("push,right,1,99999999999999999,\n"), HasSubstr("end_us"));
-    EXPECT_THAT(message_of("push,right,1\n"), HasSubstr("end_us is empty"));
+    EXPECT_THAT(message_of("push,right,1,,\n"), HasSubstr("end_us is empty"));
     const auto torn = parse_labels("gesture,hand,start_us\npush,right,1\n", "l.csv");
     ASSERT_FALSE(torn.ok());
     EXPECT_THAT(torn.error().message, HasSubstr("column 'end_us' is missing"));

@@ -50,15 +50,39 @@ TEST(JointRecording, BadRowsAreNamed) {
     EXPECT_THAT(message_of("0,right,1,1,1,inf,3,,,\n"), HasSubstr("line 2: palm_y"));
     EXPECT_THAT(message_of("0,right,1,1,1,1e9,3,,,\n"), HasSubstr("line 2: palm_y"));
     EXPECT_THAT(message_of("0,right,1,1,1,,3,,,\n"), HasSubstr("line 2: palm_y is empty"));
-    EXPECT_THAT(message_of("0,right,1,1,1,2,3\n-5,right,1,1,1,2,3\n"),
+    EXPECT_THAT(message_of("0,right,1,1,1,2,3,,,\n-5,right,1,1,1,2,3,,,\n"),
                 HasSubstr("line 3: t_us is '-5'; time goes backwards"));
-    EXPECT_THAT(message_of("0,right,1,1.5,1,2,3\n"), HasSubstr("confidence"));
-    EXPECT_THAT(message_of("0,third,1,1,1,2,3\n"), HasSubstr("hand is 'third'"));
-    EXPECT_THAT(message_of("0,right,x,1,1,2,3\n"), HasSubstr("hand_id"));
-    EXPECT_THAT(message_of("0,right,1,1,1,2,3\n0,left,1,1,1,2,3\n"), HasSubstr("line 3: hand_id"));
-    EXPECT_THAT(message_of("0,right,1,1,1,2,3\n0,left,2,1,1,2,3\n0,left,3,1,1,2,3\n"),
+    EXPECT_THAT(message_of("0,right,1,1.5,1,2,3,,,\n"), HasSubstr("confidence"));
+    EXPECT_THAT(message_of("0,third,1,1,1,2,3,,,\n"), HasSubstr("hand is 'third'"));
+    EXPECT_THAT(message_of("0,right,x,1,1,2,3,,,\n"), HasSubstr("hand_id"));
+    EXPECT_THAT(message_of("0,right,1,1,1,2,3,,,\n0,left,1,1,1,2,3,,,\n"),
+                HasSubstr("line 3: hand_id"));
+    EXPECT_THAT(message_of("0,right,1,1,1,2,3,,,\n0,left,2,1,1,2,3,,,\n0,left,3,1,1,2,3,,,\n"),
                 HasSubstr("line 4: t_us is '0'; it has over 2 hands"));
     EXPECT_THAT(message_of(""), HasSubstr("lists no frame"));
+}
+
+TEST(JointRecording, LongerThanAnHourIsRefused) {
+    // Moments without a hand cost as much memory as others.
+    std::string text = "t_us,hand,hand_id,confidence\n";
+    for (int t = 0; t <= 250'000; ++t) {
+        text += std::to_string(t) + ",,,\n";
+    }
+    const auto frames = parse_joint_recording(text, "joints.csv");
+    ASSERT_FALSE(frames.ok());
+    EXPECT_EQ(frames.error().message,
+              "joints.csv line 250002: comes after 250000 frames; split the recording");
+}
+
+TEST(JointRecording, NumbersHaveAPointAndTheirDigits) {
+    std::vector<HandFrame> frames(1);
+    frames[0].count = 1;
+    frames[0].hands[0].id = 3;
+    frames[0].hands[0].chirality = Chirality::right;
+    frames[0].hands[0].confidence = 0.5F;
+    frames[0].hands[0].joints[0] = {{-1.25F, 1234.567F, 0.0F}, true};
+    const std::string text = joint_recording_text(frames);
+    EXPECT_THAT(text, HasSubstr("\n0,right,3,0.500,-1.25,1234.57,0.00,,,"));
 }
 
 TEST(JointRecording, MissingColumnsAreNamed) {
