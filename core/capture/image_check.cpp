@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 namespace xtrack::capture {
 
@@ -132,6 +133,29 @@ Result<ImageInfo> peek_image(std::string_view bytes, const std::string& name) {
         return torn(name, "the image's header cannot be read");
     }
     return *info;
+}
+
+std::optional<std::string> without_ancillary_chunks(std::string_view bytes) {
+    if (bytes.substr(0, kPngSignature.size()) != kPngSignature) {
+        return std::nullopt;
+    }
+    std::string rest;
+    rest.reserve(bytes.size());
+    rest += kPngSignature;
+    std::size_t at = kPngSignature.size();
+    while (at + kChunkOverhead <= bytes.size()) {
+        const std::size_t length = kChunkOverhead + big_endian(bytes, at, 4);
+        const std::string_view chunk = bytes.substr(at, length);
+        constexpr unsigned kAncillary = 0x20;  // a small first letter
+        if ((static_cast<unsigned char>(chunk[4]) & kAncillary) == 0U) {
+            rest += chunk;
+        }
+        if (chunk.substr(4, 4) == "IEND") {
+            break;
+        }
+        at += length;
+    }
+    return rest.size() < bytes.size() ? std::optional(std::move(rest)) : std::nullopt;
 }
 
 Result<ImageInfo> check_image(std::string_view bytes, const std::string& name) {

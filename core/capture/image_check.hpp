@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -21,6 +22,11 @@ struct ImageInfo {
 /// stderr, or reserve what a header claims; after this check they are not asked to.
 /// @param name of the file, for messages
 [[nodiscard]] Result<ImageInfo> check_image(std::string_view bytes, const std::string& name);
+
+/// A PNG without its ancillary chunks (times, gammas, texts), if it has any: the pixels do not need
+/// them, and libpng prints on stderr what it finds odd about them.
+/// @pre check_image() took the file
+[[nodiscard]] std::optional<std::string> without_ancillary_chunks(std::string_view bytes);
 
 /// The header alone, of the first bytes of a file.
 [[nodiscard]] Result<ImageInfo> peek_image(std::string_view bytes, const std::string& name);

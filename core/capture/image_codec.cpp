@@ -2,6 +2,7 @@
 #include "core/capture/image_codec.hpp"
 
 #include <exception>
+#include <optional>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -38,6 +39,10 @@ Result<void> check(std::string_view bytes, const std::string& name, Size size, i
 template <typename T>
 Result<void> decode(std::string_view bytes, const std::string& name, Size size, int type, int flags,
                     Image<T>& out) {
+    const std::optional<std::string> bare = without_ancillary_chunks(bytes);
+    if (bare) {
+        bytes = *bare;
+    }
     try {
         const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8UC1,
                               const_cast<char*>(bytes.data()));  // NOLINT: OpenCV reads only
@@ -93,6 +98,11 @@ Result<void> decode_depth(std::string_view bytes, const std::string& name, Size 
     constexpr int kBits = 16;
     if (auto ok = check(bytes, name, size, kBits); !ok) {
         return ok;
+    }
+    if (const auto info = peek_image(bytes, name); info && info->channels != 1) {
+        // OpenCV would make a luma of it, which is no depth.
+        return Error{ErrorCode::malformed, name + ": has " + std::to_string(info->channels) +
+                                               " channels, depth has one; save it as 16-bit grey"};
     }
     out.resize(size.width, size.height);
     return decode(bytes, name, size, CV_16UC1, cv::IMREAD_ANYDEPTH | cv::IMREAD_GRAYSCALE, out);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <fstream>
 #include <utility>
 #include <vector>
 
@@ -42,11 +41,13 @@ std::optional<fs::path> if_there(const fs::path& path) {
     return is_there(path) ? std::optional(path) : std::nullopt;
 }
 
+std::string text_of(Size s) { return std::to_string(s.width) + "x" + std::to_string(s.height); }
+
 Error unsupported(const fs::path& folder, const std::string& what) {
     return {ErrorCode::unsupported, folder.string() + ": " + what};
 }
 
-// A torn copy lacks images: better said with the line that names them than in the midst of work.
+// A torn copy lacks images: better said before work begins than in the midst of it.
 Result<void> check_images_are_there(const fs::path& folder,
                                     const std::vector<RecordingEntry>& entries) {
     for (std::size_t i = 0; i < entries.size(); ++i) {
@@ -63,18 +64,19 @@ Result<void> check_images_are_there(const fs::path& folder,
 Result<Size> peek_size(const fs::path& file) {
     // Headers of camera images can carry a thumbnail before the size.
     constexpr std::size_t kPeekBytes = std::size_t{256} << 10U;
-    std::ifstream in(file, std::ios::binary);
-    std::string bytes(kPeekBytes, '\0');
-    in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    bytes.resize(static_cast<std::size_t>(in.gcount()));
-    const auto info = capture::peek_image(bytes, file.string());
+    const auto bytes = base::read_start(file, kPeekBytes);
+    if (!bytes) {
+        return bytes.error();
+    }
+    const auto info = capture::peek_image(*bytes, file.string());
     if (!info) {
         return info.error();
     }
-    if (info->size.width > kMaxImageSide_px || info->size.height > kMaxImageSide_px) {
+    if (!is_image_size(info->size)) {
         return Error{ErrorCode::malformed, file.string() + ": is over " +
                                                std::to_string(kMaxImageSide_px) +
-                                               " pixels wide or high; scale it down"};
+                                               " pixels wide or high, or over 64 million in all; "
+                                               "scale it down"};
     }
     return info->size;
 }
@@ -157,13 +159,26 @@ Result<RecordingReader> RecordingReader::open(const fs::path& folder) {
         return ok.error();
     }
     c.entries = std::move(*entries);
-    c.image_size = c.rig.camera.size;
-    if (!c.has_rig) {
-        const auto size = peek_size(folder / c.entries.front().file);
-        if (!size) {
-            return size.error();
-        }
-        c.image_size = *size;
+    if (c.kind == RecordingKind::fringe &&
+        std::all_of(c.entries.begin(), c.entries.end(),
+                    [](const RecordingEntry& e) { return e.pattern == kUnknownPattern; })) {
+        return Error{ErrorCode::malformed,
+                     list.string() +
+                         ": pattern is empty in every row, and nothing could be decoded; give the "
+                         "index into pattern.yaml's sequence where it is known"};
+    }
+    // Buffers are made for the images that are there, whatever rig.yaml claims.
+    const fs::path first = folder / c.entries.front().file;
+    const auto size = peek_size(first);
+    if (!size) {
+        return size.error();
+    }
+    c.image_size = *size;
+    if (c.has_rig && c.rig.camera.size != *size) {
+        return Error{ErrorCode::malformed, (folder / "rig.yaml").string() + ": camera_size is " +
+                                               text_of(c.rig.camera.size) + ", " +
+                                               c.entries.front().file + " is " + text_of(*size) +
+                                               " pixels; make them agree"};
     }
     reader.content_ = std::move(content);
     return reader;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstddef>
+#include <new>
 #include <utility>
 
 #include <xtrack/recording.hpp>
@@ -89,7 +90,7 @@ class RecordedDepth final : public DepthSource {
     std::string failure_;
 };
 
-Error wrong_kind(const RecordingReader& recording, const char* what) {
+Error unsupported(const RecordingReader& recording, const char* what) {
     return {ErrorCode::unsupported, recording.folder().string() + ": " + what};
 }
 
@@ -97,14 +98,19 @@ Error wrong_kind(const RecordingReader& recording, const char* what) {
 
 Result<std::unique_ptr<FrameSource>> frame_source(const RecordingReader& recording) {
     if (recording.kind() != RecordingKind::fringe) {
-        return wrong_kind(recording, "holds no fringes; give a recording with a pattern.yaml");
+        return unsupported(recording, "holds no fringes; give a recording with a pattern.yaml");
     }
-    return std::unique_ptr<FrameSource>(std::make_unique<RecordedFrames>(recording));
+    try {
+        return std::unique_ptr<FrameSource>(std::make_unique<RecordedFrames>(recording));
+    } catch (const std::bad_alloc&) {
+        return unsupported(recording,
+                           "has images that need more memory than there is; scale them down");
+    }
 }
 
 Result<std::unique_ptr<DepthSource>> depth_source(const RecordingReader& recording) {
     if (recording.kind() != RecordingKind::depth) {
-        return wrong_kind(recording, "holds no depth; give a recording of 16-bit depth images");
+        return unsupported(recording, "holds no depth; give a recording of 16-bit depth images");
     }
     return std::unique_ptr<DepthSource>(std::make_unique<RecordedDepth>(recording));
 }

@@ -57,8 +57,8 @@ Result<RecordingWriter> RecordingWriter::create(const std::filesystem::path& tar
                           setup.rig->projector->size != setup.patterns->projector_size)) {
             return bad("projector_size of the patterns is not the rig's; make them agree");
         }
-    } else if (!(setup.depth_unit_mm > 0.0 && setup.depth_unit_mm <= capture::kMaxDepthUnit_mm)) {
-        return bad("depth_unit_mm is not over 0 and at most 1000; give mm a step");
+    } else if (!capture::is_depth_unit(setup.depth_unit_mm)) {
+        return bad("depth_unit_mm is not from 0.001 to 1000; give mm a step");
     } else if (!setup.rig && setup.depth_unit_mm != kDepthUnitMm) {
         // Without rig.yaml the unit would be lost, and every depth be read at another scale.
         return bad("depth_unit_mm is kept in rig.yaml; give the rig, or depth of 0.1 mm a step");

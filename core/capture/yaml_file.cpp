@@ -36,8 +36,7 @@ Result<T> with_storage(const std::string& text, const std::string& name, const R
 
 template <int kRows, int kCols, typename Matrix>
 Result<void> read_matrix(const YamlMap& map, const char* key, Matrix& out) {
-    constexpr std::size_t kCount = static_cast<std::size_t>(kRows) * kCols;
-    const auto values = map.numbers(key, kCount, kCount);
+    const auto values = map.matrix(key, kRows, kCols);
     if (!values) {
         return values.error();
     }
@@ -121,8 +120,8 @@ Result<void> read_optional_fields(const YamlMap& map, RigFile& file) {
         if (!unit) {
             return unit.error();
         }
-        if (!(*unit > 0.0 && *unit <= kMaxDepthUnit_mm)) {
-            return map.error("depth_unit_mm", "is not over 0 and at most 1000; give mm a step");
+        if (!is_depth_unit(*unit)) {
+            return map.error("depth_unit_mm", "is not from 0.001 to 1000; give mm a step");
         }
         file.depth_unit_mm = *unit;
     }

@@ -21,7 +21,12 @@ struct RigFile {
 };
 
 inline constexpr std::size_t kMaxYamlBytes = std::size_t{1} << 20U;
+// A micrometre to a metre a step: beyond these no depth that is of use fits 16 bits.
+inline constexpr double kMinDepthUnit_mm = 1e-3;
 inline constexpr double kMaxDepthUnit_mm = 1000.0;
+[[nodiscard]] inline bool is_depth_unit(double unit_mm) noexcept {
+    return unit_mm >= kMinDepthUnit_mm && unit_mm <= kMaxDepthUnit_mm;
+}
 
 /// @return the rig as written, validated
 [[nodiscard]] Result<RigFile> parse_rig(const std::string& text, const std::string& name);

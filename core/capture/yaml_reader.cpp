@@ -175,6 +175,39 @@ Result<Size> YamlMap::size(const char* key) const {
     return Size{static_cast<int>((*sides)[0]), static_cast<int>((*sides)[1])};
 }
 
+// Rows and columns are compared with what is there, never reserved for.
+Result<void> YamlMap::check_matrix_head(const char* key, const cv::FileNode& matrix) const {
+    for (const char* side : {"rows", "cols"}) {
+        if (!matrix[side].isInt()) {
+            return error(key, std::string("has no ") + side + "; save it as a matrix or a list");
+        }
+    }
+    const double count = matrix["rows"].real() * matrix["cols"].real();
+    if (matrix["rows"].real() < 0.0 || count != static_cast<double>(matrix["data"].size())) {
+        return error(key, "has rows and cols that are not those of its data; make them agree");
+    }
+    const std::string dt = matrix["dt"].isString() ? matrix["dt"].string() : std::string();
+    if (dt.size() != 1 || std::string_view("ucwsifdh").find(dt[0]) == std::string_view::npos) {
+        return error(key, "has a dt that is not one channel of numbers; write dt: d");
+    }
+    return {};
+}
+
+Result<std::vector<double>> YamlMap::matrix(const char* key, int rows, int cols) const {
+    const auto count = static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols);
+    auto values = numbers(key, count, count);
+    const cv::FileNode node = node_[key];
+    if (!values || !node.isMap()) {
+        return values;
+    }
+    const int found = static_cast<int>(node["rows"].real());
+    if (found != rows && !(cols == 1 && found == 1)) {
+        return error(key, "has " + std::to_string(found) + " rows; give " + std::to_string(rows) +
+                              " of " + std::to_string(cols));
+    }
+    return values;
+}
+
 Result<std::vector<double>> YamlMap::numbers(const char* key, std::size_t least,
                                              std::size_t most) const {
     auto found = find(key);
@@ -182,6 +215,11 @@ Result<std::vector<double>> YamlMap::numbers(const char* key, std::size_t least,
         return found.error();
     }
     const cv::FileNode list = found->isMap() ? (*found)["data"] : *found;
+    if (found->isMap()) {
+        if (auto ok = check_matrix_head(key, *found); !ok) {
+            return ok.error();
+        }
+    }
     const std::string count = least == most ? std::to_string(most)
                                             : std::to_string(least) + " to " + std::to_string(most);
     if (!list.isSeq() || list.size() < least || list.size() > most) {

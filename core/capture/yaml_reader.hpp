@@ -28,9 +28,12 @@ class YamlMap {
     [[nodiscard]] Result<bool> flag(const char* key) const;
     [[nodiscard]] Result<std::string> word(const char* key) const;
     [[nodiscard]] Result<Size> size(const char* key) const;
-    /// A matrix or a list of numbers, row by row, between `least` and `most` of them.
+    /// A matrix or a list of numbers, row by row, between `least` and `most` of them. A matrix must
+    /// have as many as its rows and columns say, and one channel.
     [[nodiscard]] Result<std::vector<double>> numbers(const char* key, std::size_t least,
                                                       std::size_t most) const;
+    /// The same of a matrix of this shape, lying down or upright where it is a vector, or a list.
+    [[nodiscard]] Result<std::vector<double>> matrix(const char* key, int rows, int cols) const;
     /// The entries of a list of maps.
     [[nodiscard]] Result<std::vector<YamlMap>> maps(const char* key, std::size_t most) const;
 
@@ -38,6 +41,7 @@ class YamlMap {
 
  private:
     [[nodiscard]] Result<cv::FileNode> find(const char* key) const;
+    [[nodiscard]] Result<void> check_matrix_head(const char* key, const cv::FileNode& matrix) const;
 
     cv::FileNode node_;
     std::string name_;

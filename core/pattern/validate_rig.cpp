@@ -112,6 +112,9 @@ Result<void> validate(const Rig& rig) {
     if (auto ok = check_pinhole("camera", rig.camera); !ok) {
         return ok;
     }
+    if (!is_image_size(rig.camera.size)) {
+        return bad("camera_size", "is over 64 million pixels; scale the images down");
+    }
     if (rig.projector) {
         if (auto ok = check_pinhole("projector", *rig.projector); !ok) {
             return ok;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <new>
 #include <optional>
 #include <span>
 #include <string>
@@ -190,11 +191,18 @@ Result<DepthDecoder> DepthDecoder::create(const Rig& rig, const PatternSequence&
         return Error{ErrorCode::invalid_argument,
                      "projector_size of the rig and of the pattern sequence differ"};
     }
-    auto impl = std::make_unique<Impl>(*std::move(plan), settings, image);
-    if (auto ready = impl->prepare(rig); !ready) {
-        return ready.error();
+    try {
+        auto impl = std::make_unique<Impl>(*std::move(plan), settings, image);
+        if (auto ready = impl->prepare(rig); !ready) {
+            return ready.error();
+        }
+        return DepthDecoder(std::move(impl));
+    } catch (const std::bad_alloc&) {
+        return Error{ErrorCode::unsupported, "images of " + std::to_string(image.width) + "x" +
+                                                 std::to_string(image.height) +
+                                                 " pixels need more memory than there is; scale "
+                                                 "them down"};
     }
-    return DepthDecoder(std::move(impl));
 }
 
 DepthDecoder::DepthDecoder(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}

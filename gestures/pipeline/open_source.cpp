@@ -34,11 +34,14 @@ Result<Session> open_simulator(std::string_view preset, const SessionOptions& op
 #ifdef XTRACK_HAS_RECORDINGS
 
 /// Gestures are measured in millimetres, so the images need their rig.
-Error rig_missing(const std::filesystem::path& folder) {
+Error rig_missing(const RecordingReader& recording) {
+    const bool fringe = recording.kind() == RecordingKind::fringe;
     return {ErrorCode::unsupported,
-            (folder / "rig.yaml").string() +
-                ": missing; gestures need metric depth: add the calibration of the rig, or use "
-                "`decode` for phase alone"};
+            (recording.folder() / "rig.yaml").string() +
+                (fringe ? ": missing; gestures need metric depth: add the calibration of the rig, "
+                          "or use `decode` for phase alone"
+                        : ": missing; gestures need positions: add camera_matrix and camera_size "
+                          "of the depth camera")};
 }
 
 Result<Session> open_recording(const std::filesystem::path& folder, const SessionOptions& options) {
@@ -57,7 +60,7 @@ Result<Session> open_recording(const std::filesystem::path& folder, const Sessio
         }
         case RecordingKind::fringe: {
             if (!recording->has_rig()) {
-                return rig_missing(folder);
+                return rig_missing(*recording);
             }
             auto source = frame_source(*recording);
             return source ? Session::create(std::move(*source), options)
@@ -66,7 +69,7 @@ Result<Session> open_recording(const std::filesystem::path& folder, const Sessio
         case RecordingKind::depth: break;
     }
     if (!recording->has_rig()) {
-        return rig_missing(folder);
+        return rig_missing(*recording);
     }
     auto source = depth_source(*recording);
     return source ? Session::create(std::move(*source), options) : Result<Session>(source.error());

@@ -21,13 +21,27 @@ static_assert(alignof(Mat3d) == alignof(double) && sizeof(Mat3d) == 9 * sizeof(d
 static_assert(alignof(Mat4d) == alignof(double) && sizeof(Mat4d) == 16 * sizeof(double));
 
 /// Width and height in pixels.
+/// @since 0.1
 struct Size {
     int width = 0;
     int height = 0;
     friend constexpr bool operator==(const Size&, const Size&) = default;
 };
 
+/// Bounds of what is believed of a camera or a projector; of a camera's images also the pixels in
+/// all, as buffers are made for them before the first is seen.
+inline constexpr int kMaxImageSide_px = 16384;
+inline constexpr int kMaxImagePixels = 1 << 26;
+/// True where an image may have this size.
+/// @thread any
+/// @since 0.1
+[[nodiscard]] constexpr bool is_image_size(Size size) noexcept {
+    return size.width > 0 && size.height > 0 && size.width <= kMaxImageSide_px &&
+           size.height <= kMaxImageSide_px && size.width <= kMaxImagePixels / size.height;
+}
+
 /// The coordinate frame a position is given in; docs/coordinate-frames.md draws both. mm.
+/// @since 0.1
 enum class CoordinateFrame {
     camera,       ///< x right, y down, z forward, as OpenCV
     interaction,  ///< x to the user's right, y up, z from the screen toward the user

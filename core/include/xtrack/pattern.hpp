@@ -43,6 +43,7 @@ struct Pattern {
 };
 
 /// The patterns a projector shows, in order, again and again.
+/// @since 0.1
 struct PatternSequence {
     Axis axis = Axis::x;
     Size projector_size;
@@ -59,7 +60,6 @@ struct PatternSequence {
 
 /// Bounds of what validate() accepts.
 inline constexpr std::size_t kMaxPatterns = 1024;
-inline constexpr int kMaxImageSide_px = 16384;  ///< of cameras and projectors alike
 inline constexpr int kMaxGrayBits = 16;
 
 /// Checks every field that the kinds in use name: sizes 1..kMaxImageSide_px, periods of at least
@@ -79,6 +79,7 @@ inline constexpr int kMaxGrayBits = 16;
 [[nodiscard]] double intensity(const Pattern& pattern, double x_px, int channel = 0) noexcept;
 
 /// What to do about the projector's response when a pattern becomes pixel values.
+/// @since 0.1
 enum class GammaCompensation {
     none,           ///< value = light: what a projector set to linear wants, and the plain sequence
     precompensate,  ///< value = light^(1 / gamma): the wall then shows the sequence as written
@@ -100,24 +101,29 @@ enum class GammaCompensation {
 // here; hand the result to validate() when its arguments come from outside.
 
 /// `steps` sines of one period.
+/// @thread any
 /// @since 0.1
 [[nodiscard]] PatternSequence n_step_sequence(Axis axis, Size projector_size, double period_px,
                                               int steps);
 
 /// Three sines of one period: the least that gives phase (Zhang, Huang 2006).
+/// @thread any
 /// @since 0.1
 [[nodiscard]] PatternSequence three_step_sequence(Axis axis, Size projector_size, double period_px);
 
 /// Three steps of a coarse period, then three of a fine one (2x3): the coarse one orders the fine.
+/// @thread any
 /// @since 0.1
 [[nodiscard]] PatternSequence dual_sequence(Axis axis, Size projector_size, double coarse_period_px,
                                             double fine_period_px);
 
 /// White, black, a Gray code whose cells are one period wide, then three sines of that period.
+/// @thread any
 /// @since 0.1
 [[nodiscard]] PatternSequence gray_code_sequence(Axis axis, Size projector_size, double period_px);
 
 /// One coloured pattern for each period, its three phases in red, green and blue.
+/// @thread any
 /// @since 0.1
 [[nodiscard]] PatternSequence rgb_sequence(Axis axis, Size projector_size,
                                            const std::vector<double>& periods_px);
@@ -127,6 +133,7 @@ enum class GammaCompensation {
 /// that are added cover that.
 /// @return an Error if the rig has no projector or no working volume, if the volume reaches
 ///         behind the projector, or if the axis lies across the baseline
+/// @thread any
 /// @since 0.1
 [[nodiscard]] Result<double> volume_wide_period_px(const Rig& rig, Axis axis);
 

@@ -19,6 +19,7 @@
 namespace xtrack {
 
 /// What a recording holds. Joints are read by joint_recording.hpp.
+/// @since 0.1
 enum class RecordingKind {
     fringe,  ///< 8-bit images of projected patterns (a pattern.yaml is there)
     depth,   ///< 16-bit depth images
@@ -26,6 +27,7 @@ enum class RecordingKind {
 };
 
 /// One line of frames.csv.
+/// @since 0.1
 struct RecordingEntry {
     std::string file;  ///< inside the folder, `/` between names
     Stamp stamp;
@@ -45,8 +47,9 @@ class RecordingReader {
  public:
     /// Reads rig.yaml, pattern.yaml and frames.csv and finds the rest.
     /// @return an Error: the folder is not there or is no recording; a file is torn, too large or
-    ///         breaks the format; an image that frames.csv names is missing; stamps decrease; the
-    ///         rig of fringes has no projector, or is singular
+    ///         breaks the format; an image that frames.csv names is missing; stamps decrease; no
+    ///         frame of fringes names its pattern; the rig of fringes has no projector, or is
+    ///         singular; the first image is not of the rig's camera_size
     [[nodiscard]] static Result<RecordingReader> open(const std::filesystem::path& folder);
 
     [[nodiscard]] RecordingKind kind() const noexcept;
@@ -99,18 +102,19 @@ class RecordingReader {
 /// that a replay is deterministic. A player that wants the recording's own pace waits by the
 /// stamps. A broken image ends the stream with `failed`.
 /// @return an Error if the recording holds no fringes
+/// @thread any
 /// @since 0.1
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> frame_source(const RecordingReader& recording);
 
 /// The same for depth images.
 /// @return an Error if the recording holds no depth
+/// @thread any
 /// @since 0.1
 [[nodiscard]] Result<std::unique_ptr<DepthSource>> depth_source(const RecordingReader& recording);
 
-/// Writes a recording. Everything goes into a temporary folder beside the target, readable by its
-/// owner alone, which gets its name at close(): a recording is there whole or not at all. Without a
-/// close() nothing remains. Images are PNG, so that what is read back is bit for bit what was
-/// written.
+/// Writes a recording. Everything goes into a temporary folder beside the target, which gets its
+/// name at close(): a recording is there whole or not at all. Without a close() nothing remains.
+/// Images are PNG, so that what is read back is bit for bit what was written.
 /// @thread one at a time
 /// @since 0.1
 class RecordingWriter {

@@ -122,6 +122,23 @@ TEST_F(BadRecording, RigWithoutProjector) {
     expect_message("rig.yaml", "projector_matrix is missing");
 }
 
+TEST_F(BadRecording, CameraSizeThatIsNotThatOfTheImages) {
+    replace("rig.yaml", "[ 16, 12 ]", "[ 8192, 8192 ]");
+    expect_message("rig.yaml",
+                   "camera_size is 8192x8192, frames/000000.png is 16x12 pixels; make them agree");
+    replace("rig.yaml", "[ 8192, 8192 ]", "[ 16384, 16384 ]");
+    expect_message("rig.yaml", "camera_size is over 64 million pixels");
+}
+
+TEST_F(BadRecording, UnreadableImage) {
+    const fs::path file = rec_ / "frames" / "000000.png";
+    fs::permissions(file, fs::perms::none);
+    if (std::ifstream(file).is_open()) {
+        GTEST_SKIP() << "this user may read everything";
+    }
+    expect_message("000000.png", "cannot be opened: ");
+}
+
 TEST_F(BadRecording, SingularMatrix) {
     replace("rig.yaml", "20.5", "0.0");
     expect_message("rig.yaml", "camera_matrix is singular");
@@ -186,6 +203,11 @@ constexpr BadList kBadLists[] = {
      "line 2: file is '/etc/passwd.png'; name a file inside"},
     {"EscapeBackslash", "file,t_us,sequence,pattern\n..\\..\\a.png,0,0,0\n", "line 2: file"},
     {"NoImage", "file,t_us,sequence,pattern\nrig.yaml,0,0,0\n", "name a png or jpg"},
+    {"ShortRow", "file,t_us,sequence,pattern\nframes/000000.png,0,0\n",
+     "line 2: has 3 fields, the header has 4"},
+    {"NoPatternNamed",
+     "file,t_us,sequence,pattern\nframes/000000.png,0,0,\nframes/000001.png,1,1,\n",
+     "pattern is empty in every row"},
     {"NoFile", "file,t_us,sequence,pattern\n,0,0,0\n", "line 2: file is empty"},
 };
 

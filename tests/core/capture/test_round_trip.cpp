@@ -191,7 +191,7 @@ TEST_F(RoundTrip, WriterRefusesWhatWouldNotReadBack) {
     EXPECT_THAT(RecordingWriter::create(folder_ / "rec", {{}, {}, 1.0}).error().message,
                 HasSubstr("kept in rig.yaml"));
     EXPECT_THAT(RecordingWriter::create(folder_ / "rec", {small_rig(), {}, 1001.0}).error().message,
-                HasSubstr("at most 1000"));
+                HasSubstr("from 0.001 to 1000"));
     EXPECT_TRUE(RecordingWriter::create(folder_ / "rec", {{}, {}}).ok());
 }
 

@@ -63,6 +63,8 @@ TEST(RigYaml, BadFieldsAreNamed) {
                 HasSubstr("rig.yaml: camera_matrix is singular"));
     EXPECT_THAT(rig_message(replaced(good, "20.5", ".nan")), HasSubstr("camera_matrix holds NaN"));
     EXPECT_THAT(rig_message(replaced(good, "20.5, ", "")),
+                HasSubstr("camera_matrix has rows and cols that are not those"));
+    EXPECT_THAT(rig_message(std::string(kHead) + "camera_matrix: [ 1, 2 ]\n"),
                 HasSubstr("camera_matrix does not hold 9 numbers"));
     EXPECT_THAT(rig_message(replaced(good, "20.5", "wide")), HasSubstr("camera_matrix holds some"));
     EXPECT_THAT(rig_message(replaced(good, "[ 16, 12 ]", "[ 1000000000, 12 ]")),
@@ -73,13 +75,31 @@ TEST(RigYaml, BadFieldsAreNamed) {
                 HasSubstr("projector_size is missing"));
     EXPECT_THAT(rig_message(replaced(good, "[ 600.0, 2000.0 ]", "[ 2000.0, 600.0 ]")),
                 HasSubstr("working_volume_mm"));
-    EXPECT_THAT(rig_message(good + "depth_unit_mm: -1\n"), HasSubstr("depth_unit_mm"));
+    for (const char* unit : {"-1", "0", "0.0009", "1001", ".nan"}) {
+        EXPECT_THAT(rig_message(good + "depth_unit_mm: " + unit + "\n"),
+                    HasSubstr("rig.yaml: depth_unit_mm is"));
+    }
+    EXPECT_EQ(rig_message(good + "depth_unit_mm: 0.001\n"), "");
 }
 
-TEST(RigYaml, ABillionRowsAreNotReserved) {
+TEST(RigYaml, HeadsOfMatricesAgreeWithTheirData) {
     const std::string good = rig_text({small_rig(), std::nullopt});
-    // rows and cols are not believed: only the numbers that are there count.
-    EXPECT_EQ(rig_message(replaced(good, "rows: 3", "rows: 1000000000")), "");
+    // rows and cols are compared with the numbers that are there, and nothing is reserved for them.
+    for (const char* rows : {"rows: 1000000000", "rows: 2", "rows: -3", "rows: 0"}) {
+        EXPECT_THAT(rig_message(replaced(good, "rows: 3", rows)),
+                    HasSubstr("rig.yaml: camera_matrix has rows and cols that are not those"));
+    }
+    EXPECT_THAT(rig_message(replaced(good, "   rows: 3\n", "")),
+                HasSubstr("camera_matrix has no rows; save it"));
+    EXPECT_THAT(rig_message(replaced(replaced(good, "rows: 3", "rows: 1"), "cols: 3", "cols: 9")),
+                HasSubstr("camera_matrix has 1 rows; give 3 of 3"));
+    EXPECT_THAT(rig_message(replaced(good, "dt: d", "dt: \"3d\"")),
+                HasSubstr("camera_matrix has a dt that is not one channel"));
+    EXPECT_EQ(rig_message(replaced(good, "dt: d", "dt: f")), "");
+    // A vector may lie down.
+    const std::string upright = "projector_from_camera_T: !!opencv-matrix\n   rows: 3\n   cols: 1";
+    const std::string lying = "projector_from_camera_T: !!opencv-matrix\n   rows: 1\n   cols: 3";
+    EXPECT_EQ(rig_message(replaced(good, upright, lying)), "");
 }
 
 TEST(RigYaml, HostileTextsAreRefused) {

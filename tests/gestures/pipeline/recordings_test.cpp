@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <xtrack/labels.hpp>
+#include <xtrack/recording.hpp>
 #include <xtrack/scoring.hpp>
 #include <xtrack/session.hpp>
 #include <xtrack/sim.hpp>
@@ -79,6 +80,23 @@ TEST(Recordings, AFolderThatIsNotThereIsNamed) {
     const Replay got = replay("no/such/recording");
     EXPECT_NE(got.error.find("no/such/recording"), std::string::npos);
     EXPECT_EQ(got.error.find('\n'), std::string::npos);
+}
+
+TEST(Recordings, DepthWithoutItsCameraIsSentForTheCamera) {
+    const fs::path folder = fs::path(testing::TempDir()) / "xtrack_depth_without_rig";
+    fs::remove_all(folder);
+    auto writer = RecordingWriter::create(folder, {});
+    ASSERT_TRUE(writer) << writer.error().message;
+    DepthFrame depth;
+    depth.depth = Image<std::uint16_t>(160, 120, 7000);
+    ASSERT_TRUE(writer->add(depth));
+    ASSERT_TRUE(writer->close());
+    const auto session = Session::open(folder.string(), {});
+    fs::remove_all(folder);
+    ASSERT_FALSE(session);
+    EXPECT_NE(session.error().message.find("rig.yaml: missing"), std::string::npos);
+    EXPECT_NE(session.error().message.find("add camera_matrix"), std::string::npos);
+    EXPECT_EQ(session.error().message.find("decode"), std::string::npos);
 }
 
 TEST(Recordings, UnknownPresetsOfTheSimulatorNameTheKnownOnes) {
