@@ -15,14 +15,12 @@ Result<PointCloud> make_point_cloud(const DepthFrame& depth, const Rig& rig,
         return Error{ErrorCode::invalid_argument,
                      "point cloud: the colour image and the depth image differ in size"};
     }
-    if (!rig.camera.size.width || rig.camera.size != image.size()) {
+    if (rig.camera.size != image.size()) {
         return Error{ErrorCode::invalid_argument,
                      "point cloud: the depth image is not of the rig's camera_size"};
     }
-    const auto& m = rig.camera.matrix;
-    if (!m.allFinite() || !(m(0, 0) > 0.0) || !(m(1, 1) > 0.0)) {
-        return Error{ErrorCode::invalid_argument,
-                     "rig: camera_matrix is singular; calibrate again"};
+    if (auto valid = validate(rig); !valid) {
+        return Error{ErrorCode::invalid_argument, "rig: " + valid.error().message};
     }
     PointCloud cloud;
     cloud.metric = depth.metric;

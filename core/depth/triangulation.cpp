@@ -19,62 +19,23 @@ constexpr double kMinParallaxPx = 1.0;
 // Ends of the parallax check for a rig that names no volume: a hand's range, mm.
 constexpr double kTypicalNearMm = 300.0;
 constexpr double kTypicalFarMm = 1500.0;
-// R is a rotation to this; a transposed or scaled matrix is far outside.
-constexpr double kRotationTolerance = 1e-3;
 constexpr int kProjectorIterations = 5;
 // A step below this leaves an error far below it: each is a few per cent of the one before, px.
 constexpr double kProjectorConverged_px = 1e-3;
 
 Error bad(const std::string& what) { return Error{ErrorCode::invalid_argument, "rig: " + what}; }
 
-std::optional<Error> check_lens(const Pinhole& lens, const std::string& name) {
-    const auto& m = lens.matrix;
-    if (!m.allFinite()) {
-        return bad(name + "_matrix holds a number that is not finite");
-    }
-    if (!(m(0, 0) > 0.0) || !(m(1, 1) > 0.0) || m(1, 0) != 0.0 || m(2, 0) != 0.0 ||
-        m(2, 1) != 0.0 || m(2, 2) != 1.0) {
-        return bad(name +
-                   "_matrix is singular or not of the form [f_x s c_x; 0 f_y c_y; 0 0 1] with "
-                   "positive focal lengths; calibrate again");
-    }
-    if (!std::all_of(lens.distortion.begin(), lens.distortion.end(),
-                     [](double k) { return std::isfinite(k); })) {
-        return bad(name + "_distortion holds a number that is not finite");
-    }
-    return std::nullopt;
-}
-
 std::optional<Error> check(const Rig& rig, Size image) {
     if (!rig.projector) {
         return bad("no projector (projector_matrix); depth from fringes needs one");
     }
-    if (auto error = check_lens(rig.camera, "camera")) {
-        return error;
-    }
-    if (auto error = check_lens(*rig.projector, "projector")) {
-        return error;
+    if (auto valid = validate(rig); !valid) {
+        return bad(valid.error().message);
     }
     if (rig.camera.size != image) {
         return bad("camera_size is " + std::to_string(rig.camera.size.width) + " x " +
                    std::to_string(rig.camera.size.height) + " but the images are " +
                    std::to_string(image.width) + " x " + std::to_string(image.height));
-    }
-    const Eigen::Matrix3d r = rig.projector_from_camera_R;
-    if (!r.allFinite() || !rig.projector_from_camera_T.allFinite()) {
-        return bad("projector_from_camera_R or _T holds a number that is not finite");
-    }
-    if ((r * r.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() >
-            kRotationTolerance ||
-        r.determinant() < 0.0) {
-        return bad("projector_from_camera_R is not a rotation");
-    }
-    if (rig.working_volume) {
-        const auto& volume = *rig.working_volume;
-        if (!(volume.near_mm > 0.0) || !(volume.far_mm > volume.near_mm) ||
-            !std::isfinite(volume.far_mm)) {
-            return bad("working_volume_mm must be 0 < near < far");
-        }
     }
     return std::nullopt;
 }

@@ -31,9 +31,9 @@ struct VolumeReach {
 /// @thread const calls from any; rows are independent
 class Triangulation {
  public:
-    /// @return invalid_argument for singular or non-finite matrices, a rig without projector, an
-    ///         image of another size than the rig's camera, an empty working volume, or a baseline
-    ///         without component along the coded axis (depth would not move the pattern)
+    /// @return invalid_argument for a rig that validate() refuses or that has no projector, an
+    ///         image of another size than the rig's camera, or a baseline without component along
+    ///         the coded axis (depth would not move the pattern)
     [[nodiscard]] static Result<Triangulation> create(const Rig& rig, Axis axis, Size image);
 
     /// Fills `row`'s geometry for image row y; the caller sets count, inputs and outputs. The row
@@ -56,9 +56,6 @@ class Triangulation {
     [[nodiscard]] std::optional<VolumeReach> reach(int u, int v) const noexcept;
 
     [[nodiscard]] bool projector_distorted() const noexcept { return projector_.distorted(); }
-    [[nodiscard]] double near_mm() const noexcept { return near_mm_; }
-    [[nodiscard]] double far_mm() const noexcept { return far_mm_; }
-    [[nodiscard]] Size image_size() const noexcept { return size_; }
 
  private:
     struct Ratio {  // a, c of one pixel, and the same for the other projector axis

@@ -32,9 +32,6 @@ Result<std::vector<SinePlan>> collect_sines(const PatternSequence& sequence) {
         if (pattern.kind != PatternKind::sine) {
             continue;
         }
-        if (!(pattern.period_px > 0.0) || !std::isfinite(pattern.period_px)) {
-            return malformed("entry " + std::to_string(i) + ": period_px must be above 0");
-        }
         auto same = std::find_if(sines.begin(), sines.end(), [&](const SinePlan& plan) {
             return std::fabs(plan.period_px - pattern.period_px) <= kSamePeriod * pattern.period_px;
         });
@@ -74,11 +71,6 @@ Result<std::optional<GrayPlan>> collect_gray(const PatternSequence& sequence) {
         }
         if (pattern.kind != PatternKind::gray_code) {
             continue;
-        }
-        if (pattern.bits < 1 || pattern.bits > kMaxGrayBits || pattern.bit < 0 ||
-            pattern.bit >= pattern.bits || !(pattern.cell_px > 0.0)) {
-            return malformed("entry " + std::to_string(i) +
-                             ": a Gray code needs 0 <= bit < bits <= 16 and cell_px above 0");
         }
         if (!gray) {
             gray.emplace();
@@ -162,8 +154,8 @@ Result<std::optional<CyclePlan>> find_cycle(const SinePlan& sine, int pattern_co
 
 Result<DecodePlan> DecodePlan::create(const PatternSequence& sequence,
                                       const DecodeSettings& settings) {
-    if (sequence.patterns.empty()) {
-        return malformed("it is empty");
+    if (auto valid = validate(sequence); !valid) {
+        return malformed(valid.error().message);
     }
     for (std::size_t i = 0; i < sequence.patterns.size(); ++i) {
         if (sequence.patterns[i].kind == PatternKind::rgb_sine) {
@@ -172,16 +164,10 @@ Result<DecodePlan> DecodePlan::create(const PatternSequence& sequence,
                                "project grey sine patterns instead");
         }
     }
-    if (sequence.gamma && (!(*sequence.gamma > 0.0) || !std::isfinite(*sequence.gamma))) {
-        return malformed("gamma must be above 0");
-    }
     DecodePlan plan;
     plan.axis = sequence.axis;
     plan.coded_length_px = sequence.coded_length_px();
     plan.pattern_count = static_cast<int>(sequence.patterns.size());
-    if (plan.coded_length_px < 1) {
-        return malformed("projector_size must be at least one pixel along the coded axis");
-    }
     auto sines = collect_sines(sequence);
     if (!sines) {
         return sines.error();

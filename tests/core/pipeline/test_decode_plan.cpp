@@ -43,7 +43,7 @@ TEST(DecodePlan, RefusesSequencesThatItHasNoMethodFor) {
     says(refusal(blind), ErrorCode::unsupported, "flat patterns");
     PatternSequence empty;
     empty.projector_size = kProjector;
-    says(refusal(empty), ErrorCode::invalid_argument, "empty");
+    says(refusal(empty), ErrorCode::invalid_argument, "sequence is 0 patterns long");
     PatternSequence other = three_step_sequence(Axis::x, {640, 480}, 640.0);
     says(refusal(other), ErrorCode::invalid_argument, "projector_size");
     DecodeSettings taps;

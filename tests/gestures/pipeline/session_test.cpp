@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include <xtrack/null_source.hpp>
+
 namespace xtrack {
 namespace {
 
@@ -429,6 +431,17 @@ TEST(Session, UnsubscribedCallbacksAreNotCalled) {
     ASSERT_TRUE(session->run());
     EXPECT_EQ(calls, 0);
     EXPECT_EQ(frames, 100);
+}
+
+TEST(Session, RefusesARigOfDepthThatIsNotValid) {
+    Rig rig;
+    rig.camera.matrix << 580.0, 0.0, 320.0, 0.0, 580.0, 240.0, 0.0, 0.0, 1.0;
+    rig.camera.size = {640, 480};
+    EXPECT_TRUE(Session::create(null_depth_source(rig), {}));
+    rig.interaction_from_camera = Mat4d::Zero();
+    const auto session = Session::create(null_depth_source(rig), {});
+    ASSERT_FALSE(session);
+    EXPECT_NE(session.error().message.find("interaction_from_camera"), std::string::npos);
 }
 
 TEST(Session, RefusesNoSourceAndWrongSettings) {
