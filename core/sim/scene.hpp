@@ -45,7 +45,6 @@ class Lamp {
         depth_mm = p.z();
         return p.z() > kNearMm ? lens_.project(p) : ScreenPoint{-kOutside, -kOutside};
     }
-    [[nodiscard]] Size size() const noexcept { return lens_.size(); }
     /// The same point on the shadow map, whose cells are kShadowCellPx projector pixels wide.
     [[nodiscard]] ScreenPoint project_to_map(const Vec3f& point_mm, float& depth_mm) const {
         const ScreenPoint p = project(point_mm, depth_mm);
@@ -97,7 +96,7 @@ class PatternCurves {
  public:
     PatternCurves(const SimSettings& settings, std::size_t channels);
 
-    /// `length()` values, one a projector pixel; one more repeats the last.
+    /// `stride()` values: one a projector pixel, then the last once more.
     [[nodiscard]] const float* curve(std::size_t pattern, std::size_t channel) const {
         return values_.data() + (pattern * channels_ + channel) * stride();
     }

@@ -21,9 +21,6 @@ class Sensor {
     /// Turns light() into the pixels of frame `frame`; light() is used up.
     void read_out(std::uint64_t frame, ImageView<std::uint8_t> pixels);
 
-    /// Variance of a pixel whose mean is `grey`, grey levels squared, without rounding.
-    [[nodiscard]] float variance(float grey) const { return grey * shot_ + read_; }
-
  private:
     void blur();
     void add_noise(std::uint64_t frame);

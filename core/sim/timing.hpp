@@ -51,7 +51,6 @@ class Timing {
 
     [[nodiscard]] double exposure_s() const noexcept { return exposure_s_; }
     [[nodiscard]] double readout_s() const noexcept { return readout_s_; }
-    [[nodiscard]] double frame_s() const noexcept { return frame_s_; }
 
  private:
     [[nodiscard]] std::int64_t show_at(double t_s) const;

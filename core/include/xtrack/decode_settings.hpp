@@ -6,6 +6,7 @@
 namespace xtrack {
 
 /// How the images of one period are combined into a phase.
+/// @since 0.1
 enum class PhaseTaps {
     /// three_plus_two where the sequence is one cycle of three equal steps, else least_squares
     automatic,
@@ -16,6 +17,7 @@ enum class PhaseTaps {
 };
 
 /// Where the fringe order comes from.
+/// @since 0.1
 enum class OrderSource {
     automatic,    ///< Gray code, coarser periods, or a period unique in the working volume
     depth_image,  ///< DepthDecoder::set_order_depth(): a depth known from elsewhere
@@ -25,6 +27,7 @@ enum class OrderSource {
 /// What is done about things that move while the projector goes through its patterns. All but `off`
 /// need a second image of every pattern, so they begin with the second cycle, and do nothing in
 /// sequences with a Gray code.
+/// @since 0.1
 enum class MotionHandling {
     /// Nothing: static scenes, scanning. Depth is that of the centre of the window.
     off,

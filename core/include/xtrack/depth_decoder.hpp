@@ -14,6 +14,7 @@
 namespace xtrack {
 
 /// What a pushed frame led to.
+/// @since 0.1
 enum class DecodeState {
     need_more,    ///< taken; not every pattern has been seen yet
     depth_ready,  ///< taken; depth() is new
@@ -21,6 +22,7 @@ enum class DecodeState {
 };
 
 /// Why a frame was not taken.
+/// @since 0.1
 enum class RejectReason {
     none,
     damaged,               ///< no frame, or its status says so
@@ -31,8 +33,12 @@ enum class RejectReason {
 };
 
 /// One sentence for logs. Static storage.
+/// @thread any
+/// @since 0.1
 [[nodiscard]] const char* describe(RejectReason reason) noexcept;
 
+/// What push() says of a frame.
+/// @since 0.1
 struct DecodeStatus {
     DecodeState state = DecodeState::need_more;
     RejectReason reason = RejectReason::none;

@@ -9,12 +9,15 @@
 
 namespace xtrack {
 
+/// How the pixels of a frame lie in memory.
+/// @since 0.1
 enum class PixelFormat {
     grey8,  ///< one byte a pixel
     bgr8,   ///< three bytes a pixel: blue, green, red
 };
 
 /// What can be said of a frame as a whole; only `ok` frames carry pixels that mean something.
+/// @since 0.1
 enum class FrameStatus {
     ok,
     damaged,  ///< delivered, but the device says its content is wrong

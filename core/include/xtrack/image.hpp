@@ -14,6 +14,7 @@ namespace xtrack {
 
 /// Borrowed rows of pixels. `width` counts elements: a BGR image of w pixels has a width of 3 w.
 /// @ownership borrows; the Image it came from must outlive it.
+/// @since 0.1
 template <typename T>
 struct ImageView {
     T* data = nullptr;

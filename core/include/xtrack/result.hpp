@@ -9,6 +9,7 @@
 namespace xtrack {
 
 /// Why a call failed, for programs. People read `Error::message`.
+/// @since 0.1
 enum class ErrorCode {
     invalid_argument,  ///< the caller's value is out of its documented range
     not_found,         ///< a file, device or part that was named is not there
@@ -19,6 +20,7 @@ enum class ErrorCode {
 };
 
 /// One line that names the culprit (file, device, caller), the field, and the mend.
+/// @since 0.1
 struct Error {
     ErrorCode code = ErrorCode::invalid_argument;
     std::string message;
@@ -69,6 +71,7 @@ class [[nodiscard]] Result {
 };
 
 /// Success or an Error, where there is no value to give.
+/// @since 0.1
 template <>
 class [[nodiscard]] Result<void> {
  public:

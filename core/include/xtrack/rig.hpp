@@ -10,6 +10,7 @@
 namespace xtrack {
 
 /// A pinhole with OpenCV's distortion; a projector is the same thing the other way round.
+/// @since 0.1
 struct Pinhole {
     Mat3d matrix = Mat3d::Identity();    ///< focal lengths and principal point, px
     std::array<double, 8> distortion{};  ///< k1 k2 p1 p2 k3 k4 k5 k6, OpenCV's order
@@ -26,6 +27,7 @@ struct Pinhole {
 };
 
 /// Camera Z that can occur, mm.
+/// @since 0.1
 struct WorkingVolume {
     double near_mm = 0.0;
     double far_mm = 0.0;

@@ -23,6 +23,7 @@ namespace xtrack {
 enum class SimHand : std::uint8_t { left, right };
 
 /// What a simulated hand does next. Directions are the user's.
+/// @since 0.1
 enum class SimAction : std::uint8_t {
     idle,    ///< stays where it is: drift, tremor, small turns
     wander,  ///< slow movement to a random place and back; no gesture
@@ -37,6 +38,7 @@ enum class SimAction : std::uint8_t {
 };
 
 /// One line of a script.
+/// @since 0.1
 struct SimStep {
     SimAction action = SimAction::idle;
     SimHand hand = SimHand::right;
@@ -45,6 +47,7 @@ struct SimStep {
 };
 
 /// The person. Ranges are those of adults.
+/// @since 0.1
 struct SimUser {
     double hand_length_mm = 185.0;     ///< wrist to middle fingertip, 140..220
     double skin_albedo = 0.55;         ///< diffuse, in the projector's light, 0.15..0.8
@@ -57,6 +60,7 @@ struct SimUser {
 };
 
 /// What is behind and around.
+/// @since 0.1
 struct SimRoom {
     double wall_distance_mm = 1400.0;  ///< camera Z on the optical axis
     double wall_yaw_rad = 0.08;        ///< turned about the vertical, -0.5..0.5
@@ -65,6 +69,7 @@ struct SimRoom {
 };
 
 /// The projector's light. Its geometry is in the rig.
+/// @since 0.1
 struct SimProjector {
     /// grey levels of a white surface 1 m away, square to the light, at full level, 0..1000
     double light_grey = 115.0;
@@ -74,6 +79,7 @@ struct SimProjector {
 };
 
 /// The camera's sensor and lens. Its geometry is in the rig.
+/// @since 0.1
 struct SimCamera {
     bool colour = false;           ///< BGR frames
     bool chroma_422 = false;       ///< colour went through YUYV: one chroma sample for two pixels
@@ -88,6 +94,7 @@ struct SimCamera {
 
 /// Who tells the time. Locked: the projector shows one pattern a camera frame, switching between
 /// exposures. Not locked: both run free, each pattern is held for `hold_frames` nominal frames.
+/// @since 0.1
 struct SimClocks {
     bool locked = true;
     int hold_frames = 1;     ///< 1..8; locked rigs use 1
@@ -133,6 +140,7 @@ struct SimSettings {
 };
 
 /// A gesture of the script, with the times at which it really happens.
+/// @since 0.1
 struct SimLabel {
     std::string gesture;  ///< as in labels.csv: swipe_left, push, pinch ...
     SimHand hand = SimHand::right;
@@ -149,6 +157,7 @@ inline constexpr std::size_t kSimJointCount = 26;
 inline constexpr std::size_t kSimMaxHands = 2;
 
 /// Where a hand really is. Camera frame, mm.
+/// @since 0.1
 struct SimHandTruth {
     SimHand hand = SimHand::right;
     bool in_view = false;       ///< some of the hand is in the image
@@ -164,6 +173,7 @@ struct SimHandTruth {
 
 /// What a perfect instrument would have said of one frame. Depth and mask are as the shutter saw
 /// them (each row at the middle of its exposure); hands are at the frame's stamp.
+/// @since 0.1
 struct SimTruth {
     Stamp stamp;
     std::uint64_t sequence = 0;

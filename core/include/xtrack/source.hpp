@@ -13,6 +13,7 @@
 namespace xtrack {
 
 /// What a source has to say when asked for its next item.
+/// @since 0.1
 enum class SourceStatus {
     ok,       ///< an item
     timeout,  ///< none yet; ask again. Not a failure.

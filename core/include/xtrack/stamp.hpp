@@ -29,6 +29,8 @@ struct Stamp {
 };
 
 /// Seconds as a double, for filters and fits.
+/// @thread any
+/// @since 0.1
 [[nodiscard]] constexpr double to_seconds(Duration d) noexcept {
     return static_cast<double>(d.count()) * 1e-9;
 }
