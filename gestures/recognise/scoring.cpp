@@ -16,13 +16,14 @@ constexpr Duration kAfterLabel = std::chrono::milliseconds{200};
 constexpr double kSecondsAnHour = 3600.0;
 constexpr std::string_view kOkSign = "x_ok";
 
-/// P(X <= k) of a Poisson variable.
+/// P(X <= k) of a Poisson variable, whose terms are kept as logarithms: the first, exp(-mean), is
+/// below every double from a mean of 745 on.
 double poisson_below(int k, double mean) {
-    double term = std::exp(-mean);
-    double sum = term;
+    double log_term = -mean;
+    double sum = std::exp(log_term);
     for (int i = 1; i <= k; ++i) {
-        term *= mean / i;
-        sum += term;
+        log_term += std::log(mean / i);
+        sum += std::exp(log_term);
     }
     return std::min(sum, 1.0);
 }

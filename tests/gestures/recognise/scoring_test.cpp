@@ -56,6 +56,12 @@ TEST(Intervals, AreThePublishedOnes) {
     EXPECT_NEAR(poisson(3, 1.0).high, 8.767, 1e-3);
     EXPECT_NEAR(poisson(20, 2.0).low, 12.217 / 2, 1e-3);
     EXPECT_NEAR(poisson(20, 2.0).high, 30.888 / 2, 1e-3);
+    // Where exp(-mean) is no double any more; from sums with 60 digits.
+    EXPECT_NEAR(poisson(745, 1.0).low, 692.45675, 1e-4);
+    EXPECT_NEAR(poisson(745, 1.0).high, 800.47326, 1e-4);
+    EXPECT_NEAR(poisson(1000, 1.0).low, 938.97302, 1e-4);
+    EXPECT_NEAR(poisson(1000, 1.0).high, 1063.95214, 1e-4);
+    EXPECT_NEAR(poisson(5000, 1.0).high, 5140.54885, 1e-4);
 }
 
 TEST(Intervals, PercentilesInterpolate) {
