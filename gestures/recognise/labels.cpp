@@ -2,7 +2,8 @@
 #include <xtrack/labels.hpp>
 
 #include <algorithm>
-#include <cstdio>
+#include <charconv>
+#include <iterator>
 
 #include "core/base/csv.hpp"
 #include "core/base/file.hpp"
@@ -19,11 +20,33 @@ constexpr double kMaxPosition_mm = 1e5;
 constexpr std::int64_t kMaxFrames = 1'000'000;
 constexpr const char* kFingers[kFingerCount] = {"thumb", "index", "middle", "ring", "little"};
 
+/// What a label may say. A bare `swipe` is one in any direction.
+constexpr std::string_view kGestures[] = {
+    "swipe", "swipe_left", "swipe_right",   "swipe_up",        "swipe_down", "push",
+    "pull",  "pinch",      "grab",          "dwell",           "wave",       "circle",
+    "raise", "tap",        "two_hand_zoom", "two_hand_rotate", "open_palm",  "fist",
+    "point", "victory",    "thumb_up",      "thumb_down"};
+constexpr std::string_view kNotOurs = "x_";
+
 bool is_word(std::string_view text) {
     return text.size() <= kMaxNameLength && std::all_of(text.begin(), text.end(), [](char c) {
                return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
                       c == '_' || c == '-';
            });
+}
+
+/// A name that is misspelt would count as a gesture that nobody asked for, and its events as false.
+bool is_gesture(std::string_view name) {
+    return (name.starts_with(kNotOurs) && name.size() > kNotOurs.size() && is_word(name)) ||
+           std::find(std::begin(kGestures), std::end(kGestures), name) != std::end(kGestures);
+}
+
+std::string gesture_wanted() {
+    std::string names = "give ";
+    for (const std::string_view name : kGestures) {
+        names += std::string(name) + ", ";
+    }
+    return names + "or x_ and a name of your own";
 }
 
 Result<Chirality> read_hand(const base::CsvReader& csv, std::size_t column) {
@@ -112,8 +135,8 @@ Result<GestureLabel> read_label(const base::CsvReader& csv,
                                 const std::array<std::size_t, 4>& columns) {
     GestureLabel label;
     label.gesture = std::string(csv.field(columns[0]));
-    if (label.gesture.empty() || !is_word(label.gesture)) {
-        return csv.error_at(columns[0], "give a name such as swipe_left");
+    if (!is_gesture(label.gesture)) {
+        return csv.error_at(columns[0], gesture_wanted());
     }
     const auto hand = read_hand(csv, columns[1]);
     if (!hand) {
@@ -212,14 +235,24 @@ Result<HandTruth> read_truth_row(const base::CsvReader& csv,
     return truth;
 }
 
+/// Independent of the locale: a decimal comma would be one column more.
+std::string length_text(float value_mm) {
+    constexpr int kDigits = 2;
+    std::array<char, 64> buffer{};
+    const auto end =
+        std::to_chars(buffer.data(), buffer.data() + buffer.size(), static_cast<double>(value_mm),
+                      std::chars_format::fixed, kDigits);
+    return {buffer.data(), end.ptr};
+}
+
 std::string point_text(const TrackedPoint& point) {
     if (!point.valid) {
         return ",,,";
     }
-    char text[128];
-    std::snprintf(text, sizeof text, ",%.2f,%.2f,%.2f", static_cast<double>(point.position_mm.x()),
-                  static_cast<double>(point.position_mm.y()),
-                  static_cast<double>(point.position_mm.z()));
+    std::string text;
+    for (const float coordinate_mm : point.position_mm) {
+        text += "," + length_text(coordinate_mm);
+    }
     return text;
 }
 
@@ -295,11 +328,7 @@ std::string hand_truth_text(std::span<const HandTruth> truth) {
         for (std::size_t finger = 0; finger < kFingerCount; ++finger) {
             text += point_text(t.tips[finger]) + point_text(t.pads[finger]);
         }
-        char pinch[32] = "";
-        if (t.pinch_mm >= 0.0F) {
-            std::snprintf(pinch, sizeof pinch, "%.2f", static_cast<double>(t.pinch_mm));
-        }
-        text += std::string(",") + pinch + "\n";
+        text += "," + (t.pinch_mm >= 0.0F ? length_text(t.pinch_mm) : std::string()) + "\n";
     }
     return text;
 }

@@ -160,7 +160,7 @@ void GestureScore::add(const GestureScore& o) {
 
 GestureScorer::GestureScorer(const GestureSettings& settings) {
     if (settings.swipe) {
-        scored_ = {"swipe_left", "swipe_right", "swipe_up", "swipe_down"};
+        scored_ = {"swipe", "swipe_left", "swipe_right", "swipe_up", "swipe_down"};
     }
     if (settings.push) {
         scored_.emplace_back("push");
@@ -186,7 +186,6 @@ std::vector<JudgedEvent> GestureScorer::add(std::span<const GestureEvent> events
     }
     for (const Life& life : lives) {
         const GestureEvent& e = life.begin;
-        GestureScore& score = gestures_[name_of(e)];
         if (life.cancelled) {
             continue;  // counted below, when it is known what was matched
         }
@@ -201,6 +200,8 @@ std::vector<JudgedEvent> GestureScorer::add(std::span<const GestureEvent> events
             return scored(l.gesture) && same_gesture(l, e) && same_hand(l, e) &&
                    inside(l, e.sensor);
         });
+        // A label without a direction is a row of its own, in which its finds are counted.
+        GestureScore& score = gestures_[hit ? labels[*hit].gesture : name_of(e)];
         const auto ok_sign = find(labels, matched, [&](const GestureLabel& l) {
             return l.gesture == kOkSign && e.type == GestureType::pinch && same_hand(l, e) &&
                    inside(l, e.sensor);

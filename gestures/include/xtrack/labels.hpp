@@ -19,8 +19,8 @@ namespace xtrack {
 /// One line of labels.csv: what a person did, and when.
 /// @since 0.1
 struct GestureLabel {
-    /// The name of an event (`push`), with its direction where it has one (`swipe_left`); `circle`
-    /// stands for both directions. `x_...` are gestures that we do not name.
+    /// The name of an event (`push`), with its direction where it has one (`swipe_left`); without,
+    /// it stands for every direction (`swipe`, `circle`). `x_...` are gestures that we do not name.
     std::string gesture;
     Chirality hand = Chirality::unknown;  ///< unknown matches either
     Stamp start;
@@ -51,9 +51,9 @@ struct HandTruth {
 };
 
 // Readers. Errors name file, line, field and mend: a column is missing, a number is none or absurd,
-// a name is not a word, time goes backwards (in a label: it ends before it starts), a file is over
-// 64 MiB. An empty list is legal. The parse functions take a text; `name` is the file's, for
-// messages. @thread any
+// a name is not known (a pose's: not a word), time goes backwards (in a label: it ends before it
+// starts), a file is over 64 MiB. An empty list is legal. The parse functions take a text; `name`
+// is the file's, for messages. @thread any
 
 /// @since 0.1
 [[nodiscard]] Result<std::vector<GestureLabel>> read_labels(const std::filesystem::path& file);

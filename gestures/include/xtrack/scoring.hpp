@@ -82,8 +82,9 @@ struct GestureScore {
 
 /// Compares events with labels. An event (cancelled ones are none) matches a label of the same
 /// gesture and hand when its deciding frame lies between the label's start and its end + 200 ms;
-/// each label once. Every other event is false, inside a label or not. A label whose hand is
-/// unknown matches either hand; so does an event that does not claim one.
+/// each label once; a label without a direction (`swipe`) matches any. Every other event is false,
+/// inside a label or not. A label whose hand is unknown matches either hand; so does an event that
+/// does not claim one.
 /// @thread one thread at a time
 /// @since 0.1
 class GestureScorer {

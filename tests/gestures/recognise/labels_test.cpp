@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <xtrack/labels.hpp>
 
+#include <clocale>
 #include <filesystem>
 
 #include <gmock/gmock.h>
@@ -9,6 +10,7 @@
 namespace xtrack {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 std::string message_of(const std::string& rows) {
@@ -38,6 +40,10 @@ TEST(Labels, BadRowsAreNamed) {
     EXPECT_THAT(message_of("push,both,1,2,\n"), HasSubstr("hand is 'both'"));
     EXPECT_THAT(message_of(",right,1,2,\n"), HasSubstr("gesture is empty"));
     EXPECT_THAT(message_of("a b,right,1,2,\n"), HasSubstr("gesture is 'a b'"));
+    EXPECT_THAT(message_of("push,left,1,2,\nswipe_lft,left,1,2,\n"),
+                AllOf(HasSubstr("l.csv line 3: gesture is 'swipe_lft'"), HasSubstr("swipe_left")));
+    EXPECT_THAT(message_of("x_,right,1,2,\n"), HasSubstr("gesture is 'x_'"));
+    EXPECT_THAT(message_of("x_a b,right,1,2,\n"), HasSubstr("gesture is 'x_a b'"));
     EXPECT_THAT(message_of("push,right,nan,2,\n"), HasSubstr("start_us is 'nan'"));
     EXPECT_THAT(message_of("push,right,1,99999999999999999,\n"), HasSubstr("end_us"));
     EXPECT_THAT(message_of("push,right,1,,\n"), HasSubstr("end_us is empty"));
@@ -45,6 +51,13 @@ TEST(Labels, BadRowsAreNamed) {
     ASSERT_FALSE(torn.ok());
     EXPECT_THAT(torn.error().message, HasSubstr("column 'end_us' is missing"));
     EXPECT_EQ(read_labels("no/such/labels.csv").error().code, ErrorCode::not_found);
+}
+
+TEST(Labels, KnowTheNamesOfGestures) {
+    for (const char* name : {"swipe", "swipe_up", "pull", "circle", "two_hand_zoom", "open_palm",
+                             "thumb_down", "x_swipe_V"}) {
+        EXPECT_EQ(message_of(std::string(name) + ",right,1,2,\n"), "") << name;
+    }
 }
 
 TEST(Labels, WhatIsWrittenReadsBack) {
@@ -90,6 +103,20 @@ TEST(HandTruth, WhatIsWrittenReadsBack) {
     EXPECT_EQ((*back)[1].stamp, Stamp::from_us(16667));
     EXPECT_FALSE((*back)[1].palm.valid);
     EXPECT_EQ((*back)[1].pinch_mm, -1.0F);
+}
+
+TEST(HandTruth, IgnoresTheLocale) {
+    HandTruth truth;
+    truth.palm = {{1.5F, -2.0F, 700.25F}, true};
+    truth.pinch_mm = 12.5F;
+    const char* const german = std::setlocale(LC_ALL, "de_DE.UTF-8");
+    const std::string text = hand_truth_text({{truth}});
+    std::setlocale(LC_ALL, "C");
+    EXPECT_THAT(text, HasSubstr(",1.50,-2.00,700.25,"));
+    EXPECT_THAT(text, HasSubstr(",12.50\n"));
+    if (german == nullptr) {
+        GTEST_SKIP() << "the locale de_DE.UTF-8 is not installed";
+    }
 }
 
 TEST(HandTruth, TimeMustNotGoBack) {

@@ -115,6 +115,21 @@ TEST(Scorer, EverythingElseIsFalse) {
     EXPECT_DOUBLE_EQ(scorer.all().false_per_label().value, 3.0);
 }
 
+TEST(Scorer, ALabelWithoutADirectionMatchesAny) {
+    Script script;
+    script.swipe_left(1.5);
+    script.one_shot(GestureType::swipe, Direction::up, 3.5);
+    GestureScorer scorer;
+    const auto judged = scorer.add(
+        script.events, std::vector{label("swipe", 1, 2), label("swipe_down", 3, 4)}, kLength);
+    EXPECT_EQ(judged[0].verdict, Verdict::correct);
+    EXPECT_EQ(judged[1].verdict, Verdict::stray);
+    EXPECT_EQ(scorer.gestures().at("swipe").labelled, 1);
+    EXPECT_EQ(scorer.gestures().at("swipe").correct, 1);
+    EXPECT_EQ(scorer.gestures().count("swipe_left"), 0U);
+    EXPECT_EQ(scorer.all().labelled, 2);
+}
+
 TEST(Scorer, LabelsOfOtherGesturesAskForNothing) {
     GestureScorer scorer;
     scorer.add({}, std::vector{label("circle", 1, 2), label("grab", 3, 4), label("x_one", 5, 6)},
