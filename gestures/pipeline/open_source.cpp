@@ -11,6 +11,8 @@
 #include <xtrack/recording.hpp>
 #endif
 
+#include "gestures/pipeline/setting_up.hpp"
+
 namespace xtrack {
 
 namespace {
@@ -89,13 +91,15 @@ Result<Session> open_recording(const std::filesystem::path& folder, const Sessio
 }  // namespace
 
 Result<Session> Session::open(std::string_view source, const SessionOptions& options) {
-    if (source == kSimulator) {
-        return open_simulator(kDefaultPreset, options);
-    }
-    if (source.starts_with(kSimulatorPreset)) {
-        return open_simulator(source.substr(kSimulatorPreset.size()), options);
-    }
-    return open_recording(std::filesystem::path(source), options);
+    return setting_up("Session::open", [&] {
+        if (source == kSimulator) {
+            return open_simulator(kDefaultPreset, options);
+        }
+        if (source.starts_with(kSimulatorPreset)) {
+            return open_simulator(source.substr(kSimulatorPreset.size()), options);
+        }
+        return open_recording(std::filesystem::path(source), options);
+    });
 }
 
 }  // namespace xtrack

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <exception>
+#include <new>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -16,6 +17,7 @@
 #include "gestures/pipeline/input.hpp"
 #include "gestures/pipeline/input_queue.hpp"
 #include "gestures/pipeline/processor.hpp"
+#include "gestures/pipeline/setting_up.hpp"
 #include "gestures/pipeline/stream_clock.hpp"
 #include "gestures/session/event_queue.hpp"
 #include "gestures/session/subscribers.hpp"
@@ -43,6 +45,10 @@ struct Session::Impl {
           processor(std::move(proc)),
           pace(pace_in),
           clock(pace_in, input.delivery_delay()) {}
+
+    template <typename Source, typename MakeProcessor>
+    static Result<Session> session_of(std::unique_ptr<Source> source, Pace pace,
+                                      const MakeProcessor& make_processor) noexcept;
 
     /// The next item if one is due within `timeout`, read in the calling thread.
     bool read_due(Duration timeout);
@@ -93,12 +99,13 @@ bool Session::Impl::read_due(Duration timeout) {
     const auto asked = Wall::now();
     if (!item_waits) {
         input.read(pace == Pace::own_pace ? Duration::zero() : timeout, item);
-        if (item.status == SourceStatus::lost) {
-            queue.wait_until(asked + timeout);  // sources say so at once: asking again would spin
+        if (item.status == SourceStatus::lost || item.status == SourceStatus::timeout) {
+            queue.wait_until(asked +
+                             timeout);  // sources may say so at once: to ask again would spin
             return false;
         }
         if (item.status != SourceStatus::ok) {
-            return item.status != SourceStatus::timeout;
+            return true;
         }
         clock.begin(item.stamp);
         item_waits = true;
@@ -191,14 +198,22 @@ Result<StepStatus> Session::Impl::step(Duration timeout) {
     if (finished) {
         return StepStatus::end;
     }
-    if (!read_due(std::clamp(timeout, Duration::zero(), kLongestWait))) {
+    // A tick at a time: a source that waits hears nothing of stop(), and hands may be lost
+    // meanwhile.
+    const auto deadline = Wall::now() + std::clamp(timeout, Duration::zero(), kLongestWait);
+    while (true) {
+        const Duration left = std::max(deadline - Wall::now(), Duration::zero());
+        if (read_due(std::min(left, kTick))) {
+            return take();
+        }
         if (stop_requested) {
             return finish(StepStatus::stopped);
         }
         tick();
-        return StepStatus::waiting;
+        if (left <= kTick) {
+            return StepStatus::waiting;
+        }
     }
-    return take();
 }
 
 void Session::Impl::read_live() {
@@ -296,6 +311,8 @@ auto Session::Impl::guarded(Call&& call) noexcept -> decltype(call()) {
             failure = result.error();
         }
         return result;
+    } catch (const std::bad_alloc&) {
+        failure = out_of_memory("Session");
     } catch (const std::exception& e) {
         failure = Error{ErrorCode::invalid_argument, std::string("a callback threw: ") + e.what()};
     } catch (...) {
@@ -352,42 +369,39 @@ Session::~Session() {
     }
 }
 
+template <typename Source, typename MakeProcessor>
+Result<Session> Session::Impl::session_of(std::unique_ptr<Source> source, Pace pace,
+                                          const MakeProcessor& make_processor) noexcept {
+    return setting_up("Session::create", [&]() -> Result<Session> {
+        if (!source) {
+            return Error{ErrorCode::invalid_argument, "Session::create: the source is null"};
+        }
+        auto processor = make_processor(*source);
+        if (!processor) {
+            return processor.error();
+        }
+        return Session(
+            std::make_unique<Impl>(Input(std::move(source)), std::move(*processor), pace));
+    });
+}
+
 Result<Session> Session::create(std::unique_ptr<FrameSource> source,
                                 const SessionOptions& options) {
-    if (!source) {
-        return Error{ErrorCode::invalid_argument, "Session::create: the source is null"};
-    }
-    auto processor = Processor::for_frames(source->rig(), source->patterns(), options);
-    if (!processor) {
-        return processor.error();
-    }
-    return Session(
-        std::make_unique<Impl>(Input(std::move(source)), std::move(*processor), options.pace));
+    return Impl::session_of(std::move(source), options.pace, [&](const FrameSource& frames) {
+        return Processor::for_frames(frames.rig(), frames.patterns(), options);
+    });
 }
 
 Result<Session> Session::create(std::unique_ptr<DepthSource> source,
                                 const SessionOptions& options) {
-    if (!source) {
-        return Error{ErrorCode::invalid_argument, "Session::create: the source is null"};
-    }
-    auto processor = Processor::for_depth(source->rig(), options);
-    if (!processor) {
-        return processor.error();
-    }
-    return Session(
-        std::make_unique<Impl>(Input(std::move(source)), std::move(*processor), options.pace));
+    return Impl::session_of(std::move(source), options.pace, [&](const DepthSource& depths) {
+        return Processor::for_depth(depths.rig(), options);
+    });
 }
 
 Result<Session> Session::create(std::unique_ptr<HandSource> source, const SessionOptions& options) {
-    if (!source) {
-        return Error{ErrorCode::invalid_argument, "Session::create: the source is null"};
-    }
-    auto processor = Processor::for_hands(options);
-    if (!processor) {
-        return processor.error();
-    }
-    return Session(
-        std::make_unique<Impl>(Input(std::move(source)), std::move(*processor), options.pace));
+    return Impl::session_of(std::move(source), options.pace,
+                            [&](const HandSource&) { return Processor::for_hands(options); });
 }
 
 int Session::subscribe(EventCallback callback) {

@@ -2,11 +2,19 @@
 #include <xtrack/session.hpp>
 
 #include <gtest/gtest.h>
+#ifdef __linux__
+#include <sys/resource.h>
+#include <unistd.h>
+#endif
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
 #include <functional>
 #include <memory>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -401,6 +409,40 @@ TEST(Session, AssigningEndsTheSessionThatWasThere) {
     EXPECT_EQ(first->statistics().items, 3U);
 }
 
+TEST(Session, StopEndsALongStepSoon) {
+    for (const Pace pace : {Pace::replay, Pace::own_pace, Pace::live}) {
+        auto session = swiping_session(pace, 0, SourceStatus::timeout);
+        ASSERT_TRUE(session);
+        const auto begin = std::chrono::steady_clock::now();
+        std::jthread stopper([&] {
+            std::this_thread::sleep_for(50ms);
+            session->stop();
+        });
+        const auto status = session->step(5s);
+        ASSERT_TRUE(status);
+        EXPECT_EQ(*status, StepStatus::stopped);
+        EXPECT_LT(std::chrono::steady_clock::now() - begin, 2s);
+    }
+}
+
+TEST(Session, ALongStepLooksAtTheClock) {
+    auto session = swiping_session(Pace::live, 30, SourceStatus::timeout);
+    ASSERT_TRUE(session);
+    std::vector<std::chrono::steady_clock::time_point> told;
+    session->subscribe(GestureType::hand, [&](const GestureEvent&) {
+        told.push_back(std::chrono::steady_clock::now());
+    });
+    for (int i = 0; i < 30; ++i) {
+        ASSERT_TRUE(session->step());
+    }
+    EXPECT_EQ(told.size(), 1U);
+    const auto status = session->step(1s);  // a hand that is not seen for 300 ms is gone
+    ASSERT_TRUE(status);
+    EXPECT_EQ(*status, StepStatus::waiting);
+    ASSERT_EQ(told.size(), 2U);
+    EXPECT_GT(std::chrono::steady_clock::now() - told[1], 200ms);
+}
+
 TEST(Session, AStepMayWaitForEver) {
     auto session = swiping_session(Pace::own_pace, 3);
     ASSERT_TRUE(session);
@@ -443,6 +485,53 @@ TEST(Session, RefusesARigOfDepthThatIsNotValid) {
     ASSERT_FALSE(session);
     EXPECT_NE(session.error().message.find("interaction_from_camera"), std::string::npos);
 }
+
+/// Depth of a caller's whose rig() does what the test says.
+class BrokenDepth final : public DepthSource {
+ public:
+    explicit BrokenDepth(std::function<void()> act) : act_(std::move(act)) {}
+    [[nodiscard]] const Rig& rig() const override {
+        act_();
+        return rig_;
+    }
+    SourceStatus next(Duration, DepthFrame&, std::string&) override { return SourceStatus::end; }
+
+ private:
+    std::function<void()> act_;
+    Rig rig_;
+};
+
+TEST(Session, NothingThatIsThrownLeavesCreate) {
+    const auto error_of = [](std::function<void()> act) {
+        const auto session =
+            Session::create(std::unique_ptr<DepthSource>(new BrokenDepth(std::move(act))), {});
+        return session ? "" : session.error().message;
+    };
+    EXPECT_EQ(error_of([] { throw std::runtime_error("not plugged in"); }),
+              "Session::create: the source threw: not plugged in");
+    EXPECT_NE(error_of([] { throw std::bad_alloc(); }).find("not enough memory"),
+              std::string::npos);
+}
+
+#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+/// In a process of its own, whose heap holds nothing that was given back. Says how it went.
+[[noreturn]] void open_without_memory() {
+    rlim_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    rlimit tight{};
+    getrlimit(RLIMIT_AS, &tight);
+    tight.rlim_cur = pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + (rlim_t{1} << 20U);
+    setrlimit(RLIMIT_AS, &tight);
+    const auto session = Session::open("sim");
+    std::fputs(session ? "there was enough" : session.error().message.c_str(), stderr);
+    std::exit(session ? 1 : 0);
+}
+
+TEST(SessionDeathTest, OpenSaysThatThereIsNoMemory) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    EXPECT_EXIT(open_without_memory(), testing::ExitedWithCode(0), "^Session::open: not enough");
+}
+#endif
 
 TEST(Session, RefusesNoSourceAndWrongSettings) {
     EXPECT_FALSE(Session::create(std::unique_ptr<HandSource>(), {}));
