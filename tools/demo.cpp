@@ -235,11 +235,12 @@ void add_demo(CLI::App& app, int& exit_status) {
     const auto demo = std::make_shared<DemoOptions>();
     command->add_option("--out", demo->out, "Folder for pictures and events.jsonl")
         ->default_str("demo-out");
+    command->add_flag("--fast", demo->fast, "As fast as it goes instead of in real time");
     command
         ->add_option("--seeds", demo->seeds,
-                     "Score so many different people instead, without pictures")
-        ->check(CLI::Range(1, 1000));
-    command->add_flag("--fast", demo->fast, "As fast as it goes instead of in real time");
+                     "Score so many different people instead, without pictures and a clock")
+        ->check(CLI::Range(1, 1000))
+        ->excludes("--out", "--fast");
     command->add_flag("--json", demo->json, "Print the scores as JSON");
     command->callback([=, &exit_status] {
         const auto all = demo->seeds > 0 ? score_seeds(*demo) : play_presets(*demo);

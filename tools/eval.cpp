@@ -228,6 +228,7 @@ void print_json(const std::vector<Recording>& recordings, const GestureScorer& s
                                      {"labels", r.labels},
                                      {"events", std::move(events)}});
     }
+    out["gestures"] = json::object();
     for (const auto& [name, s] : scorer.gestures()) {
         out["gestures"][name] = to_json(s);
     }

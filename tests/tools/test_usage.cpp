@@ -36,6 +36,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"too_many_arguments", {"replay", "one", "two"}, "two"},
         Mistake{"number_that_is_none", {"run", "--seed", "many"}, "--seed"},
         Mistake{"number_out_of_range", {"demo", "--seeds", "0"}, "--seeds"},
+        Mistake{"pictures_of_seeds", {"demo", "--seeds", "1", "--out", "x"}, "--out"},
+        Mistake{"seeds_without_a_clock", {"demo", "--seeds", "1", "--fast"}, "--fast"},
         Mistake{"setting_out_of_range",
                 {"decode", "nowhere", "--out", "x", "--min-modulation", "-3"},
                 "min_modulation"},
