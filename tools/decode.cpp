@@ -20,6 +20,7 @@
 #include "tools/commands.hpp"
 #include "tools/decode_pictures.hpp"
 #include "tools/decode_report.hpp"
+#include "tools/interrupt.hpp"
 #include "tools/order_depth.hpp"
 #include "tools/progress.hpp"
 #include "tools/stream.hpp"
@@ -105,7 +106,8 @@ class DecodeRun {
         : options_(options),
           recording_(std::move(recording)),
           chosen_(std::move(chosen)),
-          order_(std::move(order)) {}
+          order_(std::move(order)),
+          numbered_(stems_repeat(recording_)) {}
 
     Result<void> run() {
         auto source = frame_source(recording_);
@@ -115,6 +117,9 @@ class DecodeRun {
         Progress progress("decode", recording_.entries().size());
         const std::size_t frames = recording_.entries().size();
         for (std::size_t i = 0; i < frames && (options_.all || reports_.empty()); ++i) {
+            if (interrupted()) {
+                return interrupted_error();
+            }
             const FrameSource::Item item = (*source)->next(Duration::zero());
             if (item.status != SourceStatus::ok) {
                 return Error{ErrorCode::malformed, item.message};
@@ -128,6 +133,9 @@ class DecodeRun {
                 }
             }
             progress.step();
+        }
+        if (interrupted()) {
+            return interrupted_error();
         }
         if (reports_.empty()) {
             return Error{ErrorCode::malformed,
@@ -147,6 +155,8 @@ class DecodeRun {
     }
 
  private:
+    static Error interrupted_error() { return {ErrorCode::io, "interrupted; nothing was written"}; }
+
     // The depth that gives the order is that of the frame which the result will belong to: the
     // newest one where motion is followed, else the centre of the window.
     Result<void> give_order(std::size_t newest) {
@@ -181,13 +191,15 @@ class DecodeRun {
         }
         fs::path inside;
         if (options_.all) {
-            inside = fs::path(entries[index].file).stem();
+            inside = numbered_ ? fs::path(fmt::format("{:06}", index))
+                               : fs::path(entries[index].file).stem();
             if (auto ok = output_->make_folder(inside); !ok) {
                 return ok;
             }
         }
         DecodeReport report;
         report.frame = entries[index].file;
+        report.folder = inside.string();
         report.stamp = entries[index].stamp;
         if (auto ok = write_phase(inside, report); !ok) {
             return ok;
@@ -272,11 +284,13 @@ class DecodeRun {
     RecordingReader recording_;
     Chosen chosen_;
     OrderDepth order_;
+    bool numbered_;  // folders of frames are named by number: their files' names do not tell them
     std::optional<base::NewFolder> output_;
     std::vector<DecodeReport> reports_;
 };
 
 int decode(const DecodeOptions& options) {
+    const NoteInterrupt note;
     const auto recording = RecordingReader::open(options.recording);
     if (!recording) {
         return fail(recording.error());
@@ -296,7 +310,8 @@ int decode(const DecodeOptions& options) {
     }
     DecodeRun run(options, *recording, std::move(*chosen), std::move(*order));
     if (auto ok = run.run(); !ok) {
-        return fail(ok.error());
+        const int status = fail(ok.error());
+        return interrupted() ? kInterruptedStatus : status;
     }
     std::fputs(run.answer().c_str(), stdout);
     return 0;
@@ -311,7 +326,10 @@ void add_decode(CLI::App& app, int& exit_status) {
     command->add_option("REC", options->recording, "Folder of a fringe recording")->required();
     command->add_option("--out", options->out, "Folder for the results; made whole or not at all")
         ->required();
-    command->add_flag("--all", options->all, "Every depth image, each in a folder of its own");
+    command->add_flag(
+        "--all", options->all,
+        "Every depth image, each in a folder named as its frame (numbered where frames share "
+        "a name)");
     command->add_option("--order-from", options->order_from,
                         "Fringe order from a 16-bit depth image of 0.1 mm a step, or a folder of "
                         "them named as the frames; such as truth/depth, also inside REC");

@@ -152,6 +152,9 @@ std::string json_of(const std::string& method, const std::string& note,
     for (const DecodeReport& r : reports) {
         nlohmann::ordered_json frame{
             {"frame", r.frame}, {"t_us", r.stamp.us()}, {"valid_percent", r.valid_percent}};
+        if (!r.folder.empty()) {
+            frame["folder"] = r.folder;
+        }
         if (r.has_depth) {
             frame["median_mm"] = r.median_mm;
             frame["p01_mm"] = r.low_mm;

@@ -22,7 +22,8 @@ struct TruthReport {
 
 /// What a decoded depth image is like.
 struct DecodeReport {
-    std::string frame;  ///< file of the frame that the depth belongs to
+    std::string frame;   ///< file of the frame that the depth belongs to
+    std::string folder;  ///< of its results, inside the output; empty: the output itself
     Stamp stamp;
     bool has_depth = false;
     double valid_percent = 0.0;  ///< with depth, or where there is none with a phase

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/order_depth.hpp"
 
+#include <set>
+
 #include "core/base/file.hpp"
 #include "core/capture/image_codec.hpp"
 
@@ -13,6 +15,14 @@ namespace {
 constexpr std::size_t kMaxImageBytes = std::size_t{256} << 20U;
 
 }  // namespace
+
+bool stems_repeat(const RecordingReader& recording) {
+    std::set<fs::path> stems;
+    for (const RecordingEntry& entry : recording.entries()) {
+        stems.insert(fs::path(entry.file).stem());
+    }
+    return stems.size() != recording.entries().size();
+}
 
 Result<OrderDepth> OrderDepth::open(const RecordingReader& recording, const std::string& path) {
     OrderDepth order;
@@ -43,6 +53,12 @@ Result<OrderDepth> OrderDepth::open(const RecordingReader& recording, const std:
                      "--order-from " + path + ": holds no PNG; give a folder of depth images"};
     }
     if (count > 1) {
+        if (stems_repeat(recording)) {
+            return Error{ErrorCode::unsupported,
+                         (recording.folder() / "frames.csv").string() +
+                             ": several files have the same name, so that names do not tell which "
+                             "depth is whose; rename the files, or give --order-from one image"};
+        }
         order.only_.clear();
     }
     return order;

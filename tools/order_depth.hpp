@@ -10,6 +10,10 @@
 
 namespace xtrack::tools {
 
+/// Whether files of two frames have the same name, apart from their folders and what follows the
+/// dot.
+[[nodiscard]] bool stems_repeat(const RecordingReader& recording);
+
 /// Depth images that tell a decoder its fringe order: one file for all frames, or a folder in which
 /// each frame has one of its own name (or all share the only one).
 class OrderDepth {

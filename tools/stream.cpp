@@ -3,7 +3,6 @@
 
 #include <array>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <optional>
 #include <sstream>
@@ -13,6 +12,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "tools/interrupt.hpp"
 #include "tools/progress.hpp"
 
 namespace xtrack::tools {
@@ -43,40 +43,22 @@ EventFormat format_of(const std::string& name) {
 /// Where stderr is closed or full nothing can be said any more, and the exit status must do.
 void print_error(const std::string& text) { (void)std::fputs(text.c_str(), stderr); }
 
-constexpr int kInterrupted = 130;  // what shells say of Ctrl-C
-
-volatile std::sig_atomic_t signal_received = 0;
-void note_signal(int number) {
-    signal_received = 1;
-    std::signal(number, SIG_DFL);  // a second one ends at once, whatever the source hangs in
-}
-
 /// Ctrl-C and SIGTERM end the session in order: what is open is cancelled, statistics are printed.
-/// A handler may hardly do anything, so it leaves a note that a thread reads.
-class StopOnSignal {
+class StopOnInterrupt {
  public:
-    explicit StopOnSignal(Session& session) {
-        signal_received = 0;
-        std::signal(SIGINT, note_signal);
-        std::signal(SIGTERM, note_signal);
-        watcher_ = std::jthread([&session](const std::stop_token& over) {
-            while (!over.stop_requested()) {
-                if (signal_received != 0) {
-                    session.stop();
-                }
-                std::this_thread::sleep_for(kPoll);
-            }
-        });
-    }
-    ~StopOnSignal() {
-        std::signal(SIGINT, SIG_DFL);
-        std::signal(SIGTERM, SIG_DFL);
-    }
-    StopOnSignal(const StopOnSignal&) = delete;
-    StopOnSignal& operator=(const StopOnSignal&) = delete;
+    explicit StopOnInterrupt(Session& session)
+        : watcher_([&session](const std::stop_token& over) {
+              while (!over.stop_requested()) {
+                  if (interrupted()) {
+                      session.stop();
+                  }
+                  std::this_thread::sleep_for(kPoll);
+              }
+          }) {}
 
  private:
     static constexpr std::chrono::milliseconds kPoll{20};
+    NoteInterrupt note_;
     std::jthread watcher_;
 };
 
@@ -153,7 +135,7 @@ int play(Session& session, const StreamOptions& options, Pace pace, std::size_t 
         progress.emplace("replay", items);
         session.subscribe_pipeline([&progress](const PipelineView&) { progress->step(); });
     }
-    const StopOnSignal guard(session);
+    const StopOnInterrupt guard(session);
     const Result<void> result = session.run();
     progress.reset();
     std::fflush(stdout);
@@ -165,9 +147,9 @@ int play(Session& session, const StreamOptions& options, Pace pace, std::size_t 
         return fail(result.error());
     }
     // A live stream has no end but this; a replay that stops half-way must not pass for whole.
-    if (pace == Pace::replay && signal_received != 0) {
+    if (pace == Pace::replay && interrupted()) {
         print_error("xtrack: interrupted; the events above are not all of the recording's\n");
-        return kInterrupted;
+        return kInterruptedStatus;
     }
     return 0;
 }

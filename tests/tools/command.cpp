@@ -64,18 +64,18 @@ Outcome xtrack_command(const std::vector<std::string>& arguments, const char* ou
     return outcome_of(start(arguments, folder.path(), out), folder.path());
 }
 
-Outcome interrupted_command(const std::vector<std::string>& arguments, std::size_t lines,
+Outcome interrupted_command(const std::vector<std::string>& arguments, int signal,
+                            const std::function<bool(const std::string& out)>& ready,
                             std::chrono::milliseconds patience) {
     const TemporaryFolder folder;
     const pid_t child = start(arguments, folder.path());
     for (auto waited = kPoll; waited < patience; waited += kPoll) {
         std::this_thread::sleep_for(kPoll);
-        const std::string out = text_of(folder.path() / "stdout");
-        if (static_cast<std::size_t>(std::count(out.begin(), out.end(), '\n')) >= lines) {
+        if (ready(text_of(folder.path() / "stdout"))) {
             break;
         }
     }
-    kill(child, SIGINT);
+    kill(child, signal);
     return outcome_of(child, folder.path());
 }
 

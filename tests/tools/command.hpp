@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,11 @@ struct Outcome {
 /// @param out where its stdout goes; `Outcome::out` is empty where that is outside the folder
 Outcome xtrack_command(const std::vector<std::string>& arguments, const char* out = "stdout");
 
-/// The same, with SIGINT sent once stdout holds `lines` lines, or after `patience` in any case.
-Outcome interrupted_command(const std::vector<std::string>& arguments, std::size_t lines,
-                            std::chrono::milliseconds patience);
+/// The same, with `signal` sent once `ready` says so of what is on stdout, or after `patience` in
+/// any case.
+Outcome interrupted_command(const std::vector<std::string>& arguments, int signal,
+                            const std::function<bool(const std::string& out)>& ready,
+                            std::chrono::milliseconds patience = std::chrono::seconds(20));
 
 /// One line that begins with the command's name and ends there.
 bool is_one_line_message(const std::string& text);

@@ -242,6 +242,42 @@ TEST_F(Recording, WithoutCountsKeepsEveryDepthApart) {
     EXPECT_EQ(folders(), counted);
 }
 
+// Two cameras' folders, or png beside jpg: what is in frames/ alone does not tell files apart.
+TEST_F(Recording, WithFilesOfOneNameKeepsEveryDepthApart) {
+    write_fringes(recording_);
+    fs::create_directory(recording_ / "more");
+    std::string list = "file,t_us,sequence,pattern\n";
+    const auto recording = RecordingReader::open(recording_);
+    ASSERT_TRUE(recording.ok());
+    for (std::size_t i = 0; i < recording->entries().size(); ++i) {
+        const RecordingEntry& e = recording->entries()[i];
+        std::string file = e.file;
+        if (i >= 3) {
+            file = "more/" + fs::path(recording->entries()[i - 3].file).filename().string();
+            fs::rename(recording_ / e.file, recording_ / file);
+        }
+        list += file + "," + std::to_string(e.stamp.us()) + "," + std::to_string(e.sequence) + "," +
+                std::to_string(e.pattern) + "\n";
+    }
+    const std::vector<std::string> arguments = {"decode", recording_.string(), "--all", "--json",
+                                                "--out",  out_.string()};
+    set_text(recording_ / "frames.csv", list);
+    const Outcome outcome = xtrack_command(arguments);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(std::distance(fs::directory_iterator(out_), fs::directory_iterator{}), 4);
+    EXPECT_THAT(outcome.out, HasSubstr("\"frame\":\"more/000000.png\""));
+    EXPECT_THAT(outcome.out, HasSubstr("\"folder\":\"000003\""));
+    EXPECT_TRUE(fs::exists(out_ / "000003" / "depth.png"));
+
+    fs::create_directory(recording_ / "order");
+    fs::copy_file(out_ / "000002" / "depth.png", recording_ / "order" / "000001.png");
+    fs::copy_file(out_ / "000002" / "depth.png", recording_ / "order" / "000002.png");
+    fs::remove_all(out_);
+    expect_refused(xtrack_command({"decode", recording_.string(), "--order-from", "order", "--out",
+                                   out_.string()}),
+                   "same name");
+}
+
 TEST_F(Recording, WithoutDamageIsReplayed) {
     write_joints(recording_);
     EXPECT_EQ(xtrack_command({"replay", recording_.string()}).status, 0);

@@ -54,12 +54,37 @@ TEST(Replay, ToAFullDiskFails) {
 
 // What was begun is ended, what is known is printed, and the status is that of a run that ended.
 TEST(Run, EndsInOrderOnInterrupt) {
-    const Outcome outcome =
-        interrupted_command({"run", "sim", "--json", "--stats"}, 1, std::chrono::seconds(20));
+    const Outcome outcome = interrupted_command(
+        {"run", "sim", "--json", "--stats"}, SIGINT,
+        [](const std::string& out) { return out.find('\n') != std::string::npos; });
     EXPECT_EQ(outcome.status, 0);
     EXPECT_THAT(outcome.out, HasSubstr("\"begin\""));
     EXPECT_EQ(outcome.out.back(), '\n');
     EXPECT_THAT(outcome.err, HasSubstr("frames"));
+}
+
+TEST(Eval, SaysInJsonThatThereWereNoGestures) {
+    const Outcome outcome = xtrack_command({"eval", kSwipe, "--gestures", "pinch", "--json"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_THAT(outcome.out, HasSubstr("\"gestures\": {}"));
+}
+
+// Decodes every frame into `out` of `folder` and is interrupted while it writes.
+Outcome interrupted_decode(const std::filesystem::path& folder, int signal) {
+    return interrupted_command(
+        {"decode", kSwipe, "--all", "--out", (folder / "out").string()}, signal,
+        [&](const std::string&) { return !std::filesystem::is_empty(folder); });
+}
+
+TEST(Decode, LeavesNothingOnInterrupt) {
+    for (const int signal : {SIGINT, SIGTERM}) {
+        const TemporaryFolder folder;
+        const Outcome outcome = interrupted_decode(folder.path(), signal);
+        EXPECT_EQ(outcome.status, 130);
+        EXPECT_EQ(outcome.out, "");
+        EXPECT_EQ(outcome.err, "xtrack: interrupted; nothing was written\n");
+        EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+    }
 }
 
 }  // namespace

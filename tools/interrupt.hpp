@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace xtrack::tools {
+
+constexpr int kInterruptedStatus = 130;  // what shells say of Ctrl-C
+
+/// While it lives, Ctrl-C and SIGTERM leave a note instead of ending the program; a second one ends
+/// it at once, whatever it hangs in.
+/// @thread one at a time
+class NoteInterrupt {
+ public:
+    NoteInterrupt();
+    ~NoteInterrupt();
+    NoteInterrupt(const NoteInterrupt&) = delete;
+    NoteInterrupt& operator=(const NoteInterrupt&) = delete;
+};
+
+/// Whether there is a note since the last NoteInterrupt was made. @thread any
+[[nodiscard]] bool interrupted() noexcept;
+
+}  // namespace xtrack::tools
