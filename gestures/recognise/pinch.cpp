@@ -203,24 +203,23 @@ void PinchMachine::finish(const Context& c) {
 
 void PinchMachine::handle(const Context& c, Event event, const Refusal& refusal,
                           CancelReason reason) {
-    const State before = state_;
-    bool possible = true;
-    switch (state_) {
-        case State::away: state_ = away(c, event, possible); break;
-        case State::armed: state_ = armed(c, event, possible); break;
-        case State::touching: state_ = touching(c, event, possible); break;
-        case State::pinched: state_ = pinched(c, event, reason, possible); break;
-        case State::spoilt: state_ = spoilt(c, event, possible); break;
-    }
-    const bool news = refusal.why != last_refusal_.why && *refusal.why != '\0';
-    if (before != state_ || !possible || news) {
-        c.log.write({c.sensor, c.hand.id, "pinch", name(before), name(event), name(state_),
-                     refusal.why, refusal.measured, refusal.limit, !possible});
-    }
-    last_refusal_ = refusal;
+    reporter_.report(c, step(state_, event, next(c, event, reason)), refusal,
+                     [](auto of) { return name(of); });
 }
 
-PinchMachine::State PinchMachine::away(const Context& c, Event event, bool& possible) {
+std::optional<PinchMachine::State> PinchMachine::next(const Context& c, Event event,
+                                                      CancelReason reason) {
+    switch (state_) {
+        case State::away: return away(c, event);
+        case State::armed: return armed(c, event);
+        case State::touching: return touching(c, event);
+        case State::pinched: return pinched(c, event, reason);
+        case State::spoilt: return spoilt(c, event);
+    }
+    return std::nullopt;
+}
+
+std::optional<PinchMachine::State> PinchMachine::away(const Context& c, Event event) {
     switch (event) {
         case Event::opened: open_at_ = c.sensor; return State::armed;
         case Event::between:
@@ -232,11 +231,10 @@ PinchMachine::State PinchMachine::away(const Context& c, Event event, bool& poss
         case Event::released:
         case Event::finished: break;
     }
-    possible = false;
-    return State::away;
+    return std::nullopt;
 }
 
-PinchMachine::State PinchMachine::armed(const Context& c, Event event, bool& possible) {
+std::optional<PinchMachine::State> PinchMachine::armed(const Context& c, Event event) {
     switch (event) {
         case Event::opened: open_at_ = c.sensor; return State::armed;
         case Event::between: return State::armed;
@@ -248,11 +246,10 @@ PinchMachine::State PinchMachine::armed(const Context& c, Event event, bool& pos
         case Event::released:
         case Event::finished: break;
     }
-    possible = false;
-    return State::armed;
+    return std::nullopt;
 }
 
-PinchMachine::State PinchMachine::touching(const Context& c, Event event, bool& possible) {
+std::optional<PinchMachine::State> PinchMachine::touching(const Context& c, Event event) {
     switch (event) {
         case Event::closed: return State::touching;
         case Event::held:
@@ -268,12 +265,11 @@ PinchMachine::State PinchMachine::touching(const Context& c, Event event, bool& 
         case Event::stale:
         case Event::finished: break;
     }
-    possible = false;
-    return State::touching;
+    return std::nullopt;
 }
 
-PinchMachine::State PinchMachine::pinched(const Context& c, Event event, CancelReason reason,
-                                          bool& possible) {
+std::optional<PinchMachine::State> PinchMachine::pinched(const Context& c, Event event,
+                                                         CancelReason reason) {
     switch (event) {
         case Event::closed: send(c, EventPhase::update); return State::pinched;
         case Event::released:
@@ -285,11 +281,10 @@ PinchMachine::State PinchMachine::pinched(const Context& c, Event event, CancelR
         case Event::held:
         case Event::spoilt: break;
     }
-    possible = false;
-    return State::pinched;
+    return std::nullopt;
 }
 
-PinchMachine::State PinchMachine::spoilt(const Context& c, Event event, bool& possible) {
+std::optional<PinchMachine::State> PinchMachine::spoilt(const Context& c, Event event) {
     switch (event) {
         case Event::opened: open_at_ = c.sensor; return State::armed;
         case Event::between:
@@ -301,8 +296,7 @@ PinchMachine::State PinchMachine::spoilt(const Context& c, Event event, bool& po
         case Event::released:
         case Event::finished: break;
     }
-    possible = false;
-    return State::spoilt;
+    return std::nullopt;
 }
 
 PinchMachine::Event PinchMachine::judge(const Context& c, double aperture_mm,

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "gestures/recognise/context.hpp"
+#include "gestures/recognise/step.hpp"
 
 namespace xtrack::recognise {
 
@@ -26,18 +29,19 @@ class PinchMachine {
 
     void handle(const Context& c, Event event, const Refusal& refusal = {},
                 CancelReason reason = CancelReason::none);
-    State away(const Context& c, Event event, bool& possible);
-    State armed(const Context& c, Event event, bool& possible);
-    State touching(const Context& c, Event event, bool& possible);
-    State pinched(const Context& c, Event event, CancelReason reason, bool& possible);
-    State spoilt(const Context& c, Event event, bool& possible);
+    std::optional<State> next(const Context& c, Event event, CancelReason reason);
+    std::optional<State> away(const Context& c, Event event);
+    std::optional<State> armed(const Context& c, Event event);
+    std::optional<State> touching(const Context& c, Event event);
+    std::optional<State> pinched(const Context& c, Event event, CancelReason reason);
+    std::optional<State> spoilt(const Context& c, Event event);
 
     [[nodiscard]] Event judge(const Context& c, double aperture_mm, Refusal& refusal) const;
     [[nodiscard]] Refusal spoiler(const Context& c) const;
     void send(const Context& c, EventPhase phase, CancelReason reason = CancelReason::none);
 
     State state_ = State::away;
-    Refusal last_refusal_;
+    Reporter reporter_{"pinch"};
     Stamp open_at_;      ///< newest sample with the fingers apart, while armed or touching
     Stamp closed_at_;    ///< first sample with the fingers together
     Stamp onset_;        ///< of the pinch that is active

@@ -94,24 +94,22 @@ Presence::Step Presence::see(Stamp now) {
 
 Presence::Step Presence::miss(Stamp /*now*/) { return handle(Event::unseen); }
 
-Presence::Step Presence::handle(Event event) {
-    Step step;
-    step.before = state_;
-    step.event = event;
+Presence::Step Presence::handle(Event event) { return recognise::step(state_, event, next(event)); }
+
+std::optional<Presence::State> Presence::next(Event event) {
     switch (state_) {
-        case State::appearing: state_ = appearing(event, step.possible); break;
-        case State::entering: state_ = entering(event, step.possible); break;
-        case State::present: state_ = present(event, step.possible); break;
-        case State::frozen: state_ = frozen(event, step.possible); break;
-        case State::lost: state_ = lost(event, step.possible); break;
-        case State::returning: state_ = returning(event, step.possible); break;
-        case State::gone: state_ = gone(event, step.possible); break;
+        case State::appearing: return appearing(event);
+        case State::entering: return entering(event);
+        case State::present: return present(event);
+        case State::frozen: return frozen(event);
+        case State::lost: return lost(event);
+        case State::returning: return returning(event);
+        case State::gone: return gone(event);
     }
-    step.after = state_;
-    return step;
+    return std::nullopt;
 }
 
-Presence::State Presence::appearing(Event event, bool& possible) {
+std::optional<Presence::State> Presence::appearing(Event event) {
     switch (event) {
         case Event::seen: return State::appearing;
         case Event::unseen: return State::gone;
@@ -120,11 +118,10 @@ Presence::State Presence::appearing(Event event, bool& possible) {
         case Event::expired:
         case Event::forgotten: break;
     }
-    possible = false;
-    return State::appearing;
+    return std::nullopt;
 }
 
-Presence::State Presence::entering(Event event, bool& possible) {
+std::optional<Presence::State> Presence::entering(Event event) {
     switch (event) {
         case Event::seen: return State::entering;
         case Event::unseen: thawed_ = State::entering; return State::frozen;
@@ -133,11 +130,10 @@ Presence::State Presence::entering(Event event, bool& possible) {
         case Event::expired:
         case Event::forgotten: break;
     }
-    possible = false;
-    return State::entering;
+    return std::nullopt;
 }
 
-Presence::State Presence::present(Event event, bool& possible) {
+std::optional<Presence::State> Presence::present(Event event) {
     switch (event) {
         case Event::seen: return State::present;
         case Event::unseen: thawed_ = State::present; return State::frozen;
@@ -146,11 +142,10 @@ Presence::State Presence::present(Event event, bool& possible) {
         case Event::expired:
         case Event::forgotten: break;
     }
-    possible = false;
-    return State::present;
+    return std::nullopt;
 }
 
-Presence::State Presence::frozen(Event event, bool& possible) {
+std::optional<Presence::State> Presence::frozen(Event event) {
     switch (event) {
         case Event::seen: return thawed_;
         case Event::unseen: return State::frozen;
@@ -159,11 +154,10 @@ Presence::State Presence::frozen(Event event, bool& possible) {
         case Event::admitted:
         case Event::forgotten: break;
     }
-    possible = false;
-    return State::frozen;
+    return std::nullopt;
 }
 
-Presence::State Presence::lost(Event event, bool& possible) {
+std::optional<Presence::State> Presence::lost(Event event) {
     switch (event) {
         case Event::seen: return State::returning;
         case Event::unseen: return State::lost;
@@ -172,11 +166,10 @@ Presence::State Presence::lost(Event event, bool& possible) {
         case Event::admitted:
         case Event::expired: break;
     }
-    possible = false;
-    return State::lost;
+    return std::nullopt;
 }
 
-Presence::State Presence::returning(Event event, bool& possible) {
+std::optional<Presence::State> Presence::returning(Event event) {
     switch (event) {
         case Event::seen: return State::returning;
         case Event::unseen: return State::lost;
@@ -185,11 +178,10 @@ Presence::State Presence::returning(Event event, bool& possible) {
         case Event::expired:
         case Event::forgotten: break;
     }
-    possible = false;
-    return State::returning;
+    return std::nullopt;
 }
 
-Presence::State Presence::gone(Event event, bool& possible) {
+std::optional<Presence::State> Presence::gone(Event event) {
     switch (event) {
         case Event::unseen: return State::gone;
         case Event::seen:
@@ -198,8 +190,7 @@ Presence::State Presence::gone(Event event, bool& possible) {
         case Event::expired:
         case Event::forgotten: break;
     }
-    possible = false;
-    return State::gone;
+    return std::nullopt;
 }
 
 }  // namespace xtrack::recognise

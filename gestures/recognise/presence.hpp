@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include <xtrack/stamp.hpp>
+
+#include "gestures/recognise/step.hpp"
 
 namespace xtrack::recognise {
 
@@ -19,13 +23,7 @@ class Presence {
         Duration gone;
     };
 
-    /// What one event changed.
-    struct Step {
-        State before = State::gone;
-        State after = State::gone;
-        Event event = Event::unseen;
-        bool possible = true;
-    };
+    using Step = recognise::Step<State, Event>;
 
     /// A hand is seen for the first time. @param in_view it was there when the stream began
     void appear(Stamp now, bool in_view);
@@ -50,13 +48,14 @@ class Presence {
 
  private:
     Step handle(Event event);
-    State appearing(Event event, bool& possible);
-    State entering(Event event, bool& possible);
-    State present(Event event, bool& possible);
-    State frozen(Event event, bool& possible);
-    State lost(Event event, bool& possible);
-    State returning(Event event, bool& possible);
-    State gone(Event event, bool& possible);
+    std::optional<State> next(Event event);
+    std::optional<State> appearing(Event event);
+    std::optional<State> entering(Event event);
+    std::optional<State> present(Event event);
+    std::optional<State> frozen(Event event);
+    std::optional<State> lost(Event event);
+    std::optional<State> returning(Event event);
+    std::optional<State> gone(Event event);
 
     State state_ = State::gone;
     State thawed_ = State::present;  ///< what frozen goes back to

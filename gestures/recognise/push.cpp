@@ -69,52 +69,47 @@ void PushMachine::update(const Context& c) {
         return;
     }
     thrust_ = measure(c);
-    handle(c, *thrust_.why_not == '\0' ? Event::thrust : Event::moving, thrust_.why_not,
-           thrust_.measured, thrust_.limit);
+    handle(c, *thrust_.refusal.why == '\0' ? Event::thrust : Event::moving, thrust_.refusal);
 }
 
 void PushMachine::drop(const Context& c, const char* why) {
     not_before_ = c.sensor;
     if (state_ != State::waiting) {
-        handle(c, Event::dropped, why);
+        handle(c, Event::dropped, {why, 0.0, 0.0});
     }
 }
 
-void PushMachine::handle(const Context& c, Event event, const char* why, double measured,
-                         double limit) {
-    const State before = state_;
-    bool possible = true;
+void PushMachine::handle(const Context& c, Event event, const Refusal& refusal) {
+    reporter_.report(c, step(state_, event, next(c, event)), refusal,
+                     [](auto of) { return name(of); });
+}
+
+std::optional<PushMachine::State> PushMachine::next(const Context& c, Event event) {
     switch (state_) {
-        case State::waiting: state_ = waiting(c, event, possible); break;
-        case State::recovering: state_ = recovering(c, event, possible); break;
+        case State::waiting: return waiting(c, event);
+        case State::recovering: return recovering(c, event);
     }
-    if (before != state_ || !possible || (why != last_why_ && *why != '\0')) {
-        c.log.write({c.sensor, c.hand.id, "push", name(before), name(event), name(state_), why,
-                     measured, limit, !possible});
-    }
-    last_why_ = why;
+    return std::nullopt;
 }
 
-PushMachine::State PushMachine::waiting(const Context& c, Event event, bool& possible) {
+std::optional<PushMachine::State> PushMachine::waiting(const Context& c, Event event) {
     switch (event) {
         case Event::thrust: commit(c); return State::recovering;
         case Event::moving:
         case Event::dropped: return State::waiting;
         case Event::stable: break;
     }
-    possible = false;
-    return State::waiting;
+    return std::nullopt;
 }
 
-PushMachine::State PushMachine::recovering(const Context& /*c*/, Event event, bool& possible) {
+std::optional<PushMachine::State> PushMachine::recovering(const Context& /*c*/, Event event) {
     switch (event) {
         case Event::moving: return State::recovering;
         case Event::stable:
         case Event::dropped: return State::waiting;
         case Event::thrust: break;
     }
-    possible = false;
-    return State::recovering;
+    return std::nullopt;
 }
 
 PushMachine::Thrust PushMachine::measure(const Context& c) const {
@@ -127,25 +122,19 @@ PushMachine::Thrust PushMachine::measure(const Context& c) const {
     Thrust t;
     t.start = then.stamp;
     if (then.stamp < not_before_ || lasted_ms < kCoverShare * s.push_window_ms) {
-        t.why_not = "seen too short";
-        t.measured = lasted_ms;
-        t.limit = s.push_window_ms;
+        t.refusal = {"seen too short", lasted_ms, s.push_window_ms};
         return t;
     }
     const Vec3f moved = now.palm_mm - then.palm_mm;
     const Vec3f toward_screen{0.0F, 0.0F, -1.0F};
     t.speed_mmps = static_cast<double>(moved.dot(toward_screen)) / (lasted_ms * 1e-3);
     if (t.speed_mmps < s.push_speed_mmps) {
-        t.why_not = "slow";
-        t.measured = t.speed_mmps;
-        t.limit = s.push_speed_mmps;
+        t.refusal = {"slow", t.speed_mmps, s.push_speed_mmps};
         return t;
     }
     const double off_deg = angle_deg(moved, toward_screen);
     if (off_deg > s.push_cone_deg) {
-        t.why_not = "off the normal";
-        t.measured = off_deg;
-        t.limit = s.push_cone_deg;
+        t.refusal = {"off the normal", off_deg, s.push_cone_deg};
         return t;
     }
     // The thrust may have begun before the window; what came before *it* tells a push from a hand
@@ -162,18 +151,14 @@ PushMachine::Thrust PushMachine::measure(const Context& c) const {
     const Vec3f before = c.history.velocity(from_ms(s.velocity_window_ms), start);
     const double turned_deg = angle_deg(before, moved);
     if (static_cast<double>(before.norm()) > s.push_stable_mmps && turned_deg < s.push_turn_deg) {
-        t.why_not = "goes on with the motion before";
-        t.measured = turned_deg;
-        t.limit = s.push_turn_deg;
+        t.refusal = {"goes on with the motion before", turned_deg, s.push_turn_deg};
         return t;
     }
     if (now.facing.norm() > 0.0F) {
         const float toward = -now.facing.z();
         const double faces = static_cast<double>(now.facing_signed ? toward : std::abs(toward));
         if (faces < s.push_facing) {
-            t.why_not = "the palm does not face the screen";
-            t.measured = faces;
-            t.limit = s.push_facing;
+            t.refusal = {"the palm does not face the screen", faces, s.push_facing};
         }
     }
     return t;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "gestures/recognise/context.hpp"
+#include "gestures/recognise/step.hpp"
 
 namespace xtrack::recognise {
 
@@ -20,25 +23,23 @@ class PushMachine {
     struct Thrust {
         Stamp start;
         double speed_mmps = 0.0;
-        const char* why_not = "";
-        double measured = 0.0;
-        double limit = 0.0;
+        Refusal refusal;  ///< why it is none
     };
 
     static const char* name(State s);
     static const char* name(Event e);
 
-    void handle(const Context& c, Event event, const char* why = "", double measured = 0.0,
-                double limit = 0.0);
-    State waiting(const Context& c, Event event, bool& possible);
-    State recovering(const Context& c, Event event, bool& possible);
+    void handle(const Context& c, Event event, const Refusal& refusal = {});
+    std::optional<State> next(const Context& c, Event event);
+    std::optional<State> waiting(const Context& c, Event event);
+    std::optional<State> recovering(const Context& c, Event event);
 
     [[nodiscard]] Thrust measure(const Context& c) const;
     void commit(const Context& c);
 
     State state_ = State::waiting;
     Thrust thrust_;
-    const char* last_why_ = "";
+    Reporter reporter_{"push"};
     Stamp not_before_;    ///< samples before it are not looked at: the hand was gated
     Stamp stable_since_;  ///< valid while `slow_`
     bool slow_ = false;

@@ -139,22 +139,20 @@ void SwipeMachine::drop(const Context& c, const char* why) {
 }
 
 void SwipeMachine::handle(const Context& c, Event event, const Refusal& refusal) {
-    const State before = state_;
-    bool possible = true;
-    switch (state_) {
-        case State::waiting: state_ = waiting(c, event, possible); break;
-        case State::stroking: state_ = stroking(c, event, possible); break;
-        case State::coasting: state_ = coasting(c, event, possible); break;
-    }
-    const bool news = refusal.why != last_refusal_.why && *refusal.why != '\0';
-    if (before != state_ || !possible || news) {
-        c.log.write({c.sensor, c.hand.id, "swipe", name(before), name(event), name(state_),
-                     refusal.why, refusal.measured, refusal.limit, !possible});
-    }
-    last_refusal_ = refusal;
+    reporter_.report(c, step(state_, event, next(c, event)), refusal,
+                     [](auto of) { return name(of); });
 }
 
-SwipeMachine::State SwipeMachine::waiting(const Context& c, Event event, bool& possible) {
+std::optional<SwipeMachine::State> SwipeMachine::next(const Context& c, Event event) {
+    switch (state_) {
+        case State::waiting: return waiting(c, event);
+        case State::stroking: return stroking(c, event);
+        case State::coasting: return coasting(c, event);
+    }
+    return std::nullopt;
+}
+
+std::optional<SwipeMachine::State> SwipeMachine::waiting(const Context& c, Event event) {
     switch (event) {
         case Event::fast: begin_stroke(c, wanted_); return State::stroking;
         case Event::slow:
@@ -163,11 +161,10 @@ SwipeMachine::State SwipeMachine::waiting(const Context& c, Event event, bool& p
         case Event::far_enough:
         case Event::moving: break;
     }
-    possible = false;
-    return State::waiting;
+    return std::nullopt;
 }
 
-SwipeMachine::State SwipeMachine::stroking(const Context& c, Event event, bool& possible) {
+std::optional<SwipeMachine::State> SwipeMachine::stroking(const Context& c, Event event) {
     switch (event) {
         case Event::far_enough: commit(c); return State::coasting;
         case Event::slow:
@@ -176,11 +173,10 @@ SwipeMachine::State SwipeMachine::stroking(const Context& c, Event event, bool& 
         case Event::moving: return State::stroking;
         case Event::fast: break;
     }
-    possible = false;
-    return State::stroking;
+    return std::nullopt;
 }
 
-SwipeMachine::State SwipeMachine::coasting(const Context& /*c*/, Event event, bool& possible) {
+std::optional<SwipeMachine::State> SwipeMachine::coasting(const Context& /*c*/, Event event) {
     switch (event) {
         case Event::moving: return State::coasting;
         case Event::slow:
@@ -189,8 +185,7 @@ SwipeMachine::State SwipeMachine::coasting(const Context& /*c*/, Event event, bo
         case Event::astray:
         case Event::far_enough: break;
     }
-    possible = false;
-    return State::coasting;
+    return std::nullopt;
 }
 
 SwipeMachine::Event SwipeMachine::judge(const Context& c, const Vec3f& velocity, Refusal& refusal) {
@@ -208,7 +203,7 @@ SwipeMachine::Event SwipeMachine::judge(const Context& c, const Vec3f& velocity,
     const float along_mmps = velocity.dot(axis);
     stroke_.peak_mmps = std::max(stroke_.peak_mmps, along_mmps);
     if (state_ == State::coasting) {
-        last_peak_mmps_ = std::max(last_peak_mmps_, along_mmps);
+        last_.peak_mmps = std::max(last_.peak_mmps, along_mmps);
     }
     const bool slow = static_cast<double>(along_mmps) < s.swipe_dies_mmps;
     if (slow) {
@@ -336,8 +331,8 @@ Refusal SwipeMachine::objection(const Context& c, bool stops) const {
         }
     }
 
-    if (committed_before_ && opposite(stroke_.direction, last_.direction)) {
-        const double ratio = static_cast<double>(stroke_.peak_mmps / last_peak_mmps_);
+    if (opposite(stroke_.direction, last_.direction)) {
+        const double ratio = static_cast<double>(stroke_.peak_mmps / last_.peak_mmps);
         const double since_ms = to_ms(stroke_.start - committed_at_);
         const bool barred = since_ms < s.swipe_return_bar_ms || !rested_since_;
         if (barred && ratio < static_cast<double>(kWindUpShare)) {
@@ -379,10 +374,8 @@ void SwipeMachine::begin_stroke(const Context& c, Direction direction) {
 }
 
 void SwipeMachine::commit(const Context& c) {
-    committed_before_ = true;
     committed_at_ = c.sensor;
     last_ = stroke_;
-    last_peak_mmps_ = stroke_.peak_mmps;
     rested_since_ = false;
 
     GestureEvent e = event_of(c, GestureType::swipe, EventPhase::begin);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "gestures/recognise/context.hpp"
+#include "gestures/recognise/step.hpp"
 
 namespace xtrack::recognise {
 
@@ -31,9 +34,10 @@ class SwipeMachine {
     static const char* name(Event e);
 
     void handle(const Context& c, Event event, const Refusal& refusal = {});
-    State waiting(const Context& c, Event event, bool& possible);
-    State stroking(const Context& c, Event event, bool& possible);
-    State coasting(const Context& c, Event event, bool& possible);
+    std::optional<State> next(const Context& c, Event event);
+    std::optional<State> waiting(const Context& c, Event event);
+    std::optional<State> stroking(const Context& c, Event event);
+    std::optional<State> coasting(const Context& c, Event event);
 
     [[nodiscard]] Event judge(const Context& c, const Vec3f& velocity, Refusal& refusal);
     [[nodiscard]] Refusal objection(const Context& c, bool stops) const;
@@ -46,13 +50,11 @@ class SwipeMachine {
     State state_ = State::waiting;
     Stroke stroke_;
     Direction wanted_ = Direction::none;  ///< of the event `fast`
-    Refusal last_refusal_;
+    Reporter reporter_{"swipe"};
 
-    bool committed_before_ = false;
     bool rested_since_ = true;  ///< slower than swipe_rest_mmps since the last commit
-    Stroke last_;               ///< the one that committed
+    Stroke last_;               ///< the one that committed, its peak as it went on; none at first
     Stamp committed_at_;
-    float last_peak_mmps_ = 0.0F;
     bool coming_ = false;                ///< the motion began while the hand was gated
     Vec3f coming_mmps_ = Vec3f::Zero();  ///< how it moved when the gate opened; zero before
     Stamp drop_until_;  ///< samples before it are not looked at: the hand was gated
