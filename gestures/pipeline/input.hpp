@@ -31,11 +31,12 @@ class Input {
     explicit Input(std::unique_ptr<DepthSource> source) : depths_(std::move(source)) {}
     explicit Input(std::unique_ptr<HandSource> source) : hands_(std::move(source)) {}
 
-    /// Sources may be a caller's own: one that throws or breaks its promise has failed.
+    /// As FrameSource's; other sources do not know it.
     [[nodiscard]] Duration delivery_delay() const {
         return frames_ ? frames_->delivery_delay() : Duration::zero();
     }
 
+    /// Sources may be a caller's own: one that throws or breaks its promise has failed.
     void read(Duration timeout, InputItem& item) noexcept {
         try {
             ask(timeout, item);

@@ -92,7 +92,6 @@ const char* to_string(CancelReason r) noexcept {
         case CancelReason::lost: return "lost";
         case CancelReason::edge: return "edge";
         case CancelReason::superseded: return "superseded";
-        case CancelReason::timeout: return "timeout";
         case CancelReason::disengaged: return "disengaged";
     }
     return "unknown";

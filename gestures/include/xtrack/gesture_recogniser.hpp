@@ -14,6 +14,7 @@
 namespace xtrack {
 
 /// What became of the last frame.
+/// @since 0.1
 enum class RecogniseStatus {
     ok,
     repeated_stamp,    ///< the same stamp again: skipped
@@ -21,6 +22,8 @@ enum class RecogniseStatus {
     wrong_frame,       ///< not in the interaction frame: skipped
 };
 
+/// For logs. Static storage. @thread any
+/// @since 0.1
 [[nodiscard]] const char* to_string(RecogniseStatus s) noexcept;
 
 /// One line of the why-not trace: a transition of one machine, or the death of a candidate. Texts

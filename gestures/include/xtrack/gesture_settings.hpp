@@ -95,7 +95,8 @@ struct GestureSettings {
     double pinch_close_share = 0.11;
     /// Opens again. 10..80; at least pinch_close_mm + 3 pinch_noise_mm. LeapC has 24.
     double pinch_release_mm = 30.0;
-    /// Standard deviation of the aperture, for the hysteresis. 0..20. Measured: 2 to 3 mm.
+    /// Standard deviation of the aperture: what pinch_release_mm is checked against, nothing else.
+    /// 0..20. Measured: 2 to 3 mm.
     double pinch_noise_mm = 3.0;
     /// Closed for so long. 0..1000. LeapC has 50; hands in motion touch by chance for 50 to 100.
     double pinch_hold_ms = 80.0;
@@ -124,6 +125,8 @@ struct GestureSettings {
 
 /// Checks every range and the relations between them.
 /// @return invalid_argument that names the setting, its value and its range
+/// @thread any
+/// @since 0.1
 [[nodiscard]] Result<void> validate(const GestureSettings& settings);
 
 }  // namespace xtrack

@@ -11,6 +11,7 @@
 namespace xtrack {
 
 /// The 26 joints of OpenXR's XR_EXT_hand_tracking, in its order.
+/// @since 0.1
 enum class Joint : std::uint8_t {
     palm,
     wrist,
@@ -41,12 +42,17 @@ enum class Joint : std::uint8_t {
 };
 inline constexpr std::size_t kJointCount = 26;
 
+/// In the order of every array of fingers.
+/// @since 0.1
 enum class Finger : std::uint8_t { thumb, index, middle, ring, little };
 inline constexpr std::size_t kFingerCount = 5;
 
+/// Which hand of the user it is.
+/// @since 0.1
 enum class Chirality : std::uint8_t { unknown, left, right };
 
 /// A position that may not be known.
+/// @since 0.1
 struct TrackedPoint {
     Vec3f position_mm = Vec3f::Zero();
     bool valid = false;
@@ -95,6 +101,7 @@ struct Hand {
     }
 };
 
+/// Hands that are followed at once.
 inline constexpr std::size_t kMaxHands = 2;
 
 /// All hands of one moment; none is a frame without a hand.
@@ -113,9 +120,14 @@ struct HandFrame {
 /// The same hands in the user's coordinates. A reflection in `interaction_from_camera` means a
 /// mirrored image: left and right hands swap here, and nowhere else.
 /// @param interaction_from_camera 4x4 rigid (or reflected) transform, mm
+/// @thread any
+/// @since 0.1
 [[nodiscard]] HandFrame to_interaction(const HandFrame& camera,
                                        const Mat4d& interaction_from_camera);
 
+// As labels and recordings write them. Static storage. @thread any
+
+/// @since 0.1
 [[nodiscard]] const char* to_string(Chirality c) noexcept;
 [[nodiscard]] const char* to_string(Joint j) noexcept;
 

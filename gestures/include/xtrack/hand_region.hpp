@@ -31,6 +31,7 @@ struct HandRegion {
 
 /// What the segmentation of one depth image gives.
 /// @ownership borrowed from the tracker until its next frame
+/// @since 0.1
 struct HandSegmentation {
     ImageView<const std::uint8_t> labels;  ///< 0, or the label of a region
     int scale = 1;                         ///< depth pixels a grid pixel, in both directions

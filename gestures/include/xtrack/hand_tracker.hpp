@@ -13,6 +13,7 @@
 namespace xtrack {
 
 /// What became of the last depth image.
+/// @since 0.1
 enum class TrackStatus {
     ok,
     repeated_stamp,    ///< the same stamp again: skipped, the hands are those of the frame before
@@ -21,6 +22,8 @@ enum class TrackStatus {
     not_metric,        ///< relative depth has no millimetres: skipped
 };
 
+/// For logs. Static storage. @thread any
+/// @since 0.1
 [[nodiscard]] const char* to_string(TrackStatus s) noexcept;
 
 /// Finds up to two hands in depth images and follows them: stable ids, palm, fingertips, pinch and

@@ -25,7 +25,11 @@ struct GestureLabel {
     Chirality hand = Chirality::unknown;  ///< unknown matches either
     Stamp start;
     Stamp end;
-    std::optional<Stamp> commit;  ///< the moment it could first be told, where somebody said so
+    /// The moment it could first be told, where somebody said so; by that person's definition,
+    /// which need not be the recogniser's. The simulator's, for one, ask a push for 330 mm/s and a
+    /// pinch for 50 ms, GestureSettings for 370 and 80: the first is what the gesture is, the
+    /// second what tells it from all else. What lies between them counts as delay.
+    std::optional<Stamp> commit;
     friend bool operator==(const GestureLabel&, const GestureLabel&) = default;
 };
 

@@ -43,6 +43,7 @@ class OneEuroFilter {
 };
 
 /// Three of them, for a point. Each axis adapts by itself, as in the paper's reference.
+/// @thread one thread at a time; objects are independent
 /// @since 0.1
 class OneEuroFilter3 {
  public:

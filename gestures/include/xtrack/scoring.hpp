@@ -15,20 +15,27 @@
 namespace xtrack {
 
 /// A number with its 95 % interval.
+/// @since 0.1
 struct Estimate {
     double value = 0.0;
     double low = 0.0;
     double high = 0.0;
 };
 
+// Statistics. @thread any
+
 /// Share of successes. Wilson's score interval (1927); 0..1 without trials.
+/// @since 0.1
 [[nodiscard]] Estimate wilson(int successes, int trials) noexcept;
 /// Events per unit of exposure. Garwood's exact Poisson interval (1936); 0 without exposure.
+/// @since 0.1
 [[nodiscard]] Estimate poisson(int events, double exposure) noexcept;
 /// Linear interpolation between order statistics; NaN without values. @param share 0..1
+/// @since 0.1
 [[nodiscard]] double percentile(std::vector<double> values, double share);
 
 /// What an event turned out to be.
+/// @since 0.1
 enum class Verdict {
     correct,     ///< a label of the same gesture and hand, not matched before
     allowed,     ///< a pinch during x_ok: right, but nothing was asked for
@@ -37,9 +44,12 @@ enum class Verdict {
     stray,       ///< false
 };
 
+/// As eval prints it. Static storage. @thread any
+/// @since 0.1
 [[nodiscard]] const char* to_string(Verdict v) noexcept;
 
 /// One gesture that was recognised in a stream, and what it was.
+/// @since 0.1
 struct JudgedEvent {
     GestureEvent event;  ///< its begin
     Verdict verdict = Verdict::stray;
@@ -47,6 +57,7 @@ struct JudgedEvent {
 };
 
 /// Figures of one gesture (or of all) over some streams.
+/// @since 0.1
 struct GestureScore {
     int labelled = 0;
     int correct = 0;

@@ -18,6 +18,7 @@
 namespace xtrack {
 
 /// How a session treats the stamps of its source.
+/// @since 0.1
 enum class Pace {
     /// As fast as it can, nothing dropped, `emit` = `sensor`: the same input gives the same bits.
     replay,
@@ -27,6 +28,8 @@ enum class Pace {
     live,
 };
 
+/// What a session is made with; the defaults replay, and recognise everything.
+/// @since 0.1
 struct SessionOptions {
     Pace pace = Pace::replay;
     DecodeSettings decode;
@@ -35,6 +38,7 @@ struct SessionOptions {
 };
 
 /// What one step did.
+/// @since 0.1
 enum class StepStatus {
     processed,  ///< one item went through the whole pipeline
     waiting,    ///< nothing was due within the time-out
@@ -45,6 +49,7 @@ enum class StepStatus {
 /// Everything that one item became on its way, for viewers and recorders. Pointers are null where a
 /// source enters the pipeline later (a depth camera has no `frame`) or a stage gave nothing.
 /// @ownership borrowed for the length of the call; copy `frame`'s FramePtr to keep it
+/// @since 0.1
 struct PipelineView {
     const FramePtr* frame = nullptr;
     const DepthDecoder* decoder = nullptr;  ///< set when `depth` came from fringes
@@ -55,6 +60,7 @@ struct PipelineView {
 };
 
 /// A length of time measured often.
+/// @since 0.1
 struct TimeStatistics {
     std::uint64_t count = 0;
     double median_us = 0.0;
@@ -63,6 +69,7 @@ struct TimeStatistics {
 };
 
 /// Counts and wall-clock times since the session was made.
+/// @since 0.1
 struct SessionStatistics {
     std::uint64_t items = 0;     ///< frames, depth images or hand frames processed
     std::uint64_t dropped = 0;   ///< arrived faster than they could be processed (never in replay)
@@ -98,10 +105,14 @@ class Session {
     using PipelineCallback = std::function<void(const PipelineView&)>;
 
     /// Opens a source by name: `sim`, `sim:PRESET`, or the folder of a recording.
-    /// @return an Error that names the source and the mend
+    /// @return an Error that names the source and the mend; memory that runs out is one
+    /// @thread any
     static Result<Session> open(std::string_view source, const SessionOptions& options = {});
 
     /// Takes over a source that the caller made. @ownership the session owns the source
+    /// @return an Error: the source is null, throws, or has a rig that cannot be used; a setting is
+    ///         out of its range
+    /// @thread any
     static Result<Session> create(std::unique_ptr<FrameSource> source,
                                   const SessionOptions& options);
     static Result<Session> create(std::unique_ptr<DepthSource> source,
@@ -134,6 +145,7 @@ class Session {
     /// Runs until the stream ends, fails, or stop() is called. @thread any, one at a time
     Result<void> run();
     /// Runs in a thread of the session's own. @return an Error if it runs already
+    /// @thread any, one at a time
     Result<void> start();
     /// Waits for the thread of start(). @return how it ended; an Error in a callback
     /// @thread one at a time
@@ -141,10 +153,12 @@ class Session {
     /// Processes at most one item in the calling thread; waits for it up to `timeout` (0: not at
     /// all). Call it at 50 Hz or more: losses are noticed by the clock. @thread one at a time
     Result<StepStatus> step(Duration timeout = Duration::zero());
-    /// Ends run(), step() or the thread of start() soon; what was open is cancelled. Cannot fail;
-    /// again is harmless. @thread any, a callback included
+    /// Ends run(), step() or the thread of start() within 20 ms of a source that keeps its
+    /// time-outs; what was open is cancelled. Cannot fail; again is harmless. @thread any, a
+    /// callback included
     void stop() noexcept;
 
+    /// Counts and times so far. @thread any
     [[nodiscard]] SessionStatistics statistics() const;
 
  private:

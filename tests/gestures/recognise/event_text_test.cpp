@@ -54,7 +54,6 @@ TEST(EventText, ACancelHasItsReason) {
     for (const auto& [reason, text] : {std::pair{CancelReason::lost, "lost"},
                                        {CancelReason::edge, "edge"},
                                        {CancelReason::superseded, "superseded"},
-                                       {CancelReason::timeout, "timeout"},
                                        {CancelReason::disengaged, "disengaged"}}) {
         e.cancel_reason = reason;
         EXPECT_NE(to_json(e).find(std::string{R"("cancel_reason":")"} + text + "\""),
