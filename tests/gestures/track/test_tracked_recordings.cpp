@@ -271,6 +271,9 @@ TEST(CarClips, OneHandThroughTheStroke) {
         std::printf("%-38s seen in %d of %d frames, longest id %d\n", name.c_str(), seen, frames,
                     longest);
     }
+    if (clips == 0) {
+        GTEST_SKIP() << shared("hands/depth") << " holds no labelled clip of a driver's hand";
+    }
     EXPECT_GE(held * 10, clips * 8) << "clips where one id lasts half of the gesture";
 }
 
