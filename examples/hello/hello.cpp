@@ -5,13 +5,13 @@
 
 int main() {
     auto session = xtrack::Session::open("sim");  // or the folder of a recording
-    if (!session) {
-        std::fprintf(stderr, "%s\n", session.error().message.c_str());
-        return 1;
-    }
-    session->subscribe(xtrack::GestureType::swipe, [](const xtrack::GestureEvent& event) {
-        if (event.phase == xtrack::EventPhase::end)
-            std::puts(to_string(event.direction));
-    });
-    return session->run() ? 0 : 1;
+    if (session)
+        session->subscribe(xtrack::GestureType::swipe, [](const xtrack::GestureEvent& event) {
+            if (event.phase == xtrack::EventPhase::end)
+                std::puts(to_string(event.direction));
+        });
+    const xtrack::Result<void> result = session ? session->run() : session.error();
+    if (!result)
+        std::fprintf(stderr, "%s\n", result.error().message.c_str());
+    return result ? 0 : 1;
 }

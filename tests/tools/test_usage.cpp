@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <string>
+
 #include <gmock/gmock.h>
 
 #include "tests/tools/command.hpp"
@@ -75,6 +78,15 @@ TEST(Usage, VersionIsANumber) {
     const Outcome outcome = xtrack_command({"--version"});
     EXPECT_EQ(outcome.status, 0);
     EXPECT_THAT(outcome.out, testing::MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+\n"));
+}
+
+TEST(Readme, ShowsTheExampleWordForWord) {
+    const std::filesystem::path project = XTRACK_TEST_DATA "/../..";
+    const std::string readme = text_of(project / "README.md");
+    const std::string hello = text_of(project / "examples/hello/hello.cpp");
+    ASSERT_FALSE(hello.empty());
+    const std::string program = hello.substr(hello.find("#include"));  // without the licence
+    EXPECT_THAT(readme, HasSubstr("```cpp\n" + program + "```\n"));
 }
 
 }  // namespace
