@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <exception>
 #include <memory>
 #include <string>
@@ -21,7 +22,8 @@ struct InputItem {
     FramePtr frame;
     DepthFrame depth;
     HandFrame hands;
-    Stamp stamp;  ///< of whichever of the three is set
+    Stamp stamp;                                ///< of whichever of the three is set
+    std::chrono::steady_clock::time_point due;  ///< when it could be had, by the stream's clock
 };
 
 /// The three kinds of source as one.

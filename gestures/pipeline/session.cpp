@@ -50,6 +50,8 @@ struct Session::Impl {
     static Result<Session> session_of(std::unique_ptr<Source> source, Pace pace,
                                       const MakeProcessor& make_processor) noexcept;
 
+    /// Sets when an item is due that was asked for at `asked` and is there now.
+    void admit(InputItem& read, Wall::time_point asked);
     /// The next item if one is due within `timeout`, read in the calling thread.
     bool read_due(Duration timeout);
     /// The item through the pipeline, its events to the subscribers.
@@ -74,6 +76,7 @@ struct Session::Impl {
     bool finished = false;    ///< open gestures have ended or were cancelled
     std::optional<Error> failure;
     Stamp newest;
+    Wall::time_point newest_due;
     std::optional<Wall::time_point> newest_taken;  ///< when the item with that stamp was taken
     InputQueue queue;
 
@@ -95,6 +98,12 @@ struct Session::Impl {
     TimeHistogram latency XTRACK_GUARDED_BY(statistics_mutex);
 };
 
+void Session::Impl::admit(InputItem& read, Wall::time_point asked) {
+    clock.begin(read.stamp);
+    clock.note_read(read.stamp, asked, Wall::now());
+    read.due = clock.due(read.stamp);
+}
+
 bool Session::Impl::read_due(Duration timeout) {
     const auto asked = Wall::now();
     if (!item_waits) {
@@ -107,10 +116,10 @@ bool Session::Impl::read_due(Duration timeout) {
         if (item.status != SourceStatus::ok) {
             return true;
         }
-        clock.begin(item.stamp);
+        admit(item, asked);
         item_waits = true;
     }
-    const auto due = clock.due(item.stamp);
+    const auto due = item.due;
     const auto deadline = std::max(asked + timeout, Wall::now());
     if (due > deadline) {
         queue.wait_until(deadline);
@@ -127,7 +136,7 @@ void Session::Impl::deliver(std::span<const GestureEvent> events) {
     for (const GestureEvent& original : events) {
         GestureEvent event = original;
         event.sensor = newest;
-        event.emit = pace == Pace::replay ? event.sensor : clock.now(newest);
+        event.emit = pace == Pace::replay ? event.sensor : clock.now(newest, newest_due);
         {
             const MutexLock lock(statistics_mutex);
             ++counters.events;
@@ -174,6 +183,7 @@ Result<StepStatus> Session::Impl::take() {
         return outcome.error();
     }
     newest = item.stamp;
+    newest_due = item.due;
     newest_taken = begin;
     deliver(outcome->events);
     if (outcome->view.interaction_hands != nullptr) {
@@ -219,6 +229,7 @@ Result<StepStatus> Session::Impl::step(Duration timeout) {
 void Session::Impl::read_live() {
     InputItem read;
     while (!queue.closed()) {
+        const auto asked = Wall::now();
         input.read(kTick, read);
         if (read.status == SourceStatus::timeout) {
             continue;
@@ -229,9 +240,8 @@ void Session::Impl::read_live() {
         }
         const bool last = read.status == SourceStatus::end || read.status == SourceStatus::failed;
         if (read.status == SourceStatus::ok) {
-            clock.begin(read.stamp);
-            const auto due = clock.due(read.stamp);
-            if (due > Wall::now() && !queue.wait_until(due)) {
+            admit(read, asked);
+            if (read.due > Wall::now() && !queue.wait_until(read.due)) {
                 return;
             }
         }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 
@@ -10,6 +11,7 @@
 namespace xtrack {
 
 /// The one place that relates a stream's stamps to the wall clock.
+/// @thread begin(), note_read() and due(): the one that reads the source; now(): any
 class StreamClock {
  public:
     using Wall = std::chrono::steady_clock;
@@ -26,6 +28,15 @@ class StreamClock {
         }
     }
 
+    /// Tells how long the source took to make an item. A simulator may be slower than the time it
+    /// simulates, as no camera is: for as long as that made the item late the clock stands still.
+    /// What is late for any other reason stays so. @pre begin()
+    void note_read(Stamp stamp, Wall::time_point asked, Wall::time_point got) {
+        if (pace_ == Pace::own_pace) {
+            start_ += std::clamp(got - due(stamp), Wall::duration::zero(), got - asked);
+        }
+    }
+
     /// When an item with this stamp may be processed. @pre begin()
     [[nodiscard]] Wall::time_point due(Stamp stamp) const {
         return pace_ == Pace::own_pace ? start_ + (stamp - *first_) + delivery_delay_
@@ -33,13 +44,11 @@ class StreamClock {
     }
 
     /// Now, on the stream's clock; `newest` is the newest stamp seen, which is all the time there
-    /// is in a replay.
-    [[nodiscard]] Stamp now(Stamp newest) const {
+    /// is in a replay, and `was_due` the due() of its item.
+    [[nodiscard]] Stamp now(Stamp newest, Wall::time_point was_due) const {
         switch (pace_) {
             case Pace::replay: return newest;
-            case Pace::own_pace:
-                return first_ ? *first_ + std::chrono::duration_cast<Duration>(Wall::now() - start_)
-                              : newest;
+            case Pace::own_pace: return newest + delivery_delay_ + (Wall::now() - was_due);
             case Pace::live: break;
         }
         return {std::chrono::duration_cast<Duration>(Wall::now().time_since_epoch()).count()};

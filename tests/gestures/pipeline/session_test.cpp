@@ -378,6 +378,60 @@ TEST(Session, ImagesThatComeLateLoseNoHand) {
     EXPECT_EQ(phases, (std::vector<EventPhase>{EventPhase::begin, EventPhase::end}));
 }
 
+constexpr int kStallBefore = 3;  // the hand is told of some frames later
+constexpr auto kStall = 300ms;
+
+/// From the newest frame to the event that tells of a hand; `stall` holds up the frame before it.
+Duration latency_of_a_hand(bool in_steps, const std::function<void()>& source_stalls,
+                           const std::function<void()>& program_stalls) {
+    SwipingHand hand(15);
+    std::string message;
+    int asked = 0;
+    auto session = callers_session(
+        [&](HandFrame& out) {
+            if (asked++ == kStallBefore) {
+                source_stalls();
+            }
+            return hand.next(Duration::zero(), out, message);
+        },
+        Pace::own_pace);
+    Duration latency{};
+    session->subscribe([&](const GestureEvent& e) {
+        if (e.phase == EventPhase::begin) {
+            latency = e.emit - e.sensor;
+        }
+    });
+    int seen = 0;
+    session->subscribe_hands([&](const HandFrame&) {
+        if (++seen == kStallBefore) {
+            program_stalls();
+        }
+    });
+    if (!in_steps) {
+        EXPECT_TRUE(session->run());
+        return latency;
+    }
+    while (true) {
+        const auto status = session->step(1s);
+        if (!status || *status == StepStatus::end) {
+            return latency;
+        }
+    }
+}
+
+TEST(Session, ASlowSourceIsNoLatency) {
+    const auto stall = [] { std::this_thread::sleep_for(kStall); };
+    for (const bool in_steps : {false, true}) {
+        const Duration latency = latency_of_a_hand(in_steps, stall, [] {});
+        EXPECT_GT(latency, Duration::zero());
+        EXPECT_LT(latency, kStall / 2) << in_steps;
+    }
+    // What the program itself takes is.
+    EXPECT_GT(latency_of_a_hand(
+                  true, [] {}, stall),
+              kStall / 2);
+}
+
 TEST(Session, AWaitInACallbackIsRefused) {
     auto session = swiping_session(Pace::replay, 3);
     ASSERT_TRUE(session);

@@ -9,7 +9,7 @@ namespace {
 TEST(StreamClock, ReplayHasNoTimeButTheStream) {
     StreamClock clock(Pace::replay);
     clock.begin(Stamp::from_us(5));
-    EXPECT_EQ(clock.now(Stamp::from_us(77)), Stamp::from_us(77));
+    EXPECT_EQ(clock.now(Stamp::from_us(77), {}), Stamp::from_us(77));
     EXPECT_LE(clock.due(Stamp::from_us(1'000'000'000)), StreamClock::Wall::now());
 }
 
@@ -23,8 +23,8 @@ TEST(StreamClock, OwnPaceCountsFromTheFirstStamp) {
     const auto due = clock.due(first + std::chrono::milliseconds(250));
     EXPECT_GE(due, before + std::chrono::milliseconds(250));
     EXPECT_LE(due, after + std::chrono::milliseconds(250));
-    EXPECT_GE(clock.now(first), first);
-    EXPECT_LT(clock.now(first), first + std::chrono::seconds(10));
+    EXPECT_GE(clock.now(first, before), first);
+    EXPECT_LT(clock.now(first, before), first + std::chrono::seconds(10));
 }
 
 TEST(StreamClock, OwnPaceWaitsUntilACameraWouldHaveDelivered) {
@@ -35,10 +35,29 @@ TEST(StreamClock, OwnPaceWaitsUntilACameraWouldHaveDelivered) {
     EXPECT_LE(clock.due({}), after + std::chrono::seconds(20));
 }
 
+TEST(StreamClock, StandsStillForASourceThatIsSlow) {
+    using std::chrono::milliseconds;
+    StreamClock clock(Pace::own_pace);
+    clock.begin({});
+    const Stamp stamp = Stamp{} + milliseconds(20);
+    const auto due = clock.due(stamp);
+    clock.note_read(stamp, due - milliseconds(15), due - milliseconds(5));  // in time
+    EXPECT_EQ(clock.due(stamp), due);
+    clock.note_read(stamp, due - milliseconds(15), due + milliseconds(7));  // made for too long
+    EXPECT_EQ(clock.due(stamp), due + milliseconds(7));
+    // Asked for too late; that it took 2 ms to make is all the source can be blamed for.
+    clock.note_read(stamp, due + milliseconds(100), due + milliseconds(102));
+    EXPECT_EQ(clock.due(stamp), due + milliseconds(9));
+    StreamClock live(Pace::live);
+    live.begin({});
+    live.note_read({}, due, due + milliseconds(7));
+    EXPECT_EQ(live.due({}), StreamClock::Wall::time_point::min());
+}
+
 TEST(StreamClock, LiveIsTheMonotonicClock) {
     const StreamClock clock(Pace::live);
     const auto wall = StreamClock::Wall::now().time_since_epoch();
-    const Stamp now = clock.now({});
+    const Stamp now = clock.now({}, {});
     EXPECT_GE(now.ns, std::chrono::duration_cast<Duration>(wall).count());
     EXPECT_LT(now.ns, std::chrono::duration_cast<Duration>(wall).count() + 1'000'000'000);
 }
