@@ -240,6 +240,16 @@ void DepthDecoder::Impl::decode_rows(int begin, int end) noexcept {
         mask_rows(begin, end);
         return;
     }
+    if (plan.gray) {
+        for (const int pattern : plan.needed) {
+            oldest_image = std::min(oldest_image, window.clean(pattern, begin)->stamp);
+        }
+    }
+    for (const Images& images : still) {
+        for (std::size_t k = 0; k < static_cast<std::size_t>(images.taps.count); ++k) {
+            oldest_image = std::min(oldest_image, images.frames[k]->stamp);
+        }
+    }
     follow_images();
     for (int y = begin; y < end; ++y) {
         const bool keep = settings.keep_maps;

@@ -114,6 +114,7 @@ DecodeStatus DepthDecoder::Impl::push(const FramePtr& frame) noexcept {
         }
     }
     moving_depth_mm = motion && motion->moving() ? find_moving_depth_mm() : 0.0;
+    oldest_image = frame->stamp;
     const std::span<const int> edges = window.row_edges(size.height);
     for (std::size_t n = 0; n + 1 < edges.size(); ++n) {
         decode_rows(edges[n], edges[n + 1]);
@@ -150,11 +151,7 @@ void DepthDecoder::Impl::register_depth(const Frame& newest) noexcept {
             }
         }
     }
-    Stamp first = newest.stamp;
-    for (const int pattern : plan.needed) {
-        first = std::min(first, window.newest(pattern)->stamp);
-    }
-    depth.span = newest.stamp - first;
+    depth.span = newest.stamp - oldest_image;
     depth.stamp = centre->stamp;
     depth.sequence = centre->sequence;
     phase_map.stamp = centre->stamp;

@@ -64,6 +64,7 @@ struct DepthDecoder::Impl {
     OrderReference order;
     Image<float> order_px;  // from set_order_depth()
     std::optional<Stamp> last_stamp;
+    Stamp oldest_image;  // of those that the depth at hand is made of
     DepthFrame depth;
     PhaseMap phase_map;
     Image<float> coordinate;

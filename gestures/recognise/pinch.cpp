@@ -31,9 +31,6 @@ constexpr Duration kApertureLost = std::chrono::milliseconds{300};
 // The fingers must be seen on their way: in this share of the samples of pinch_approach_ms. Cameras
 // that see a hand well know 0.75 and more, a hand whose tips come and go 0.6 and less.
 constexpr double kApproachShare = 0.65;
-// Of a palm that moves farther while its depth is measured the fingers cannot be told apart, mm:
-// half a finger's breadth.
-constexpr double kBlurMm = 10.0;
 // Five images at 60 Hz, or a depth camera at 15 Hz.
 constexpr Duration kUsualSpan = std::chrono::nanoseconds{1'000'000'000 / 15};
 constexpr double kSmallestWayMm = 1.0;
@@ -122,7 +119,7 @@ double approach_seen(const MotionHistory& history, Stamp closed_at, const Gestur
         }
         if (past.stamp < closed_at) {
             ++all;
-            seen += past.aperture_mm >= 0.0F && blur_mm(history, i, s) <= kBlurMm ? 1 : 0;
+            seen += past.aperture_mm >= 0.0F && blur_mm(history, i, s) <= s.pinch_blur_mm ? 1 : 0;
         }
     }
     return all > 0 ? static_cast<double>(seen) / all : 0.0;
@@ -327,8 +324,8 @@ PinchMachine::Event PinchMachine::judge(const Context& c, double aperture_mm,
             return held_ms > s.pinch_settle_ms ? Event::spoilt : Event::closed;
         }
         const double blur_now_mm = blur_mm(c.history, 0, s);
-        if (blur_now_mm > kBlurMm) {
-            refusal = {"the palm moves too fast to see fingers", blur_now_mm, kBlurMm};
+        if (blur_now_mm > s.pinch_blur_mm) {
+            refusal = {"the palm moves too fast to see fingers", blur_now_mm, s.pinch_blur_mm};
             return held_ms > s.pinch_settle_ms ? Event::spoilt : Event::closed;
         }
         refusal = spoiler(c);
@@ -351,8 +348,8 @@ Refusal PinchMachine::spoiler(const Context& c) const {
 
     const std::size_t closed = c.history.count_within(c.sensor - closed_at_) - 1;
     const double blur_then_mm = blur_mm(c.history, closed, s);
-    if (blur_then_mm > kBlurMm) {
-        return {"the palm moved too fast to see fingers", blur_then_mm, kBlurMm};
+    if (blur_then_mm > s.pinch_blur_mm) {
+        return {"the palm moved too fast to see fingers", blur_then_mm, s.pinch_blur_mm};
     }
     const double seen = approach_seen(c.history, closed_at_, s);
     if (seen < kApproachShare) {

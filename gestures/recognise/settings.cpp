@@ -61,6 +61,7 @@ constexpr std::array kRanges{
     Range{"pinch_open_mm", &S::pinch_open_mm, 20.0, 120.0},
     Range{"pinch_approach_ms", &S::pinch_approach_ms, 50.0, 3000.0},
     Range{"pinch_palm_mmps", &S::pinch_palm_mmps, 20.0, 1000.0},
+    Range{"pinch_blur_mm", &S::pinch_blur_mm, 2.0, 1000.0},
     Range{"pinch_settle_ms", &S::pinch_settle_ms, 0.0, 5000.0},
     Range{"pinch_others_fold", &S::pinch_others_fold, 0.05, 1.0},
     Range{"pinch_thumb_free_mm", &S::pinch_thumb_free_mm, 0.0, 100.0},

@@ -105,6 +105,10 @@ struct GestureSettings {
     double pinch_approach_ms = 600.0;
     /// Not while the palm moves faster. 20..1000. Measured: pinches begin at 5..120 mm/s.
     double pinch_palm_mmps = 150.0;
+    /// Nor of a camera's palm that moves farther while its depth is measured (HandFrame::span; 67
+    /// ms where it is not known): its fingers are smeared. 2..1000. Measured: 10 loses a tenth of
+    /// the pinches that are seen at 60 images a second.
+    double pinch_blur_mm = 15.0;
     /// It must come to rest within so long of the touch. 0..5000. Measured: 0..250.
     double pinch_settle_ms = 400.0;
     /// The three other fingers stay: one that folds by more in the approach makes a fist or a

@@ -108,6 +108,21 @@ TEST(DepthDecoder, StampsTheNewestFrameWhenItFollowsMotionAndTheCentreOtherwise)
             const int centre = n < 4 ? n - 1 : n - 2;
             EXPECT_EQ(centred.depth().sequence, static_cast<std::uint64_t>(centre)) << n;
             EXPECT_EQ(centred.depth().stamp, Stamp::from_us(10000 * centre));
+            EXPECT_EQ(following.depth().span, std::chrono::milliseconds{n < 4 ? 20 : 40}) << n;
+        }
+    }
+}
+
+TEST_P(EverySequence, SpansTheImagesThatItIsMadeOf) {
+    DecodeSettings settings;
+    settings.taps = PhaseTaps::least_squares;
+    const PatternSequence patterns = this->patterns();
+    const int count = static_cast<int>(patterns.patterns.size());
+    DepthDecoder decoder = make(patterns, settings);
+    for (int n = 0; n < 3 * count; ++n) {
+        decoder.push(plane_frame(plane_rig(), patterns, n % count, n, kWall));
+        if (n + 1 >= count) {
+            EXPECT_EQ(decoder.depth().span, std::chrono::milliseconds{10 * (count - 1)}) << n;
         }
     }
 }

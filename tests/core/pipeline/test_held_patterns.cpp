@@ -56,6 +56,8 @@ TEST(HeldPatterns, AStillSceneIsWholeInEveryFrame) {
             if (n >= 5) {
                 ASSERT_EQ(status.state, DecodeState::depth_ready);
                 EXPECT_GT(good_share(decoder->depth(), kWall), 0.95) << n;
+                // Rows that saw the switch take the show before it, the others the newest.
+                EXPECT_EQ(decoder->depth().span, std::chrono::milliseconds{50}) << n;
             }
         }
     }
