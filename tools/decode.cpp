@@ -58,6 +58,17 @@ struct Chosen {
     std::string note;
 };
 
+// Folders of frames are named as their files where these names tell them apart and name a folder:
+// what is left of "...png" without its extension is the parent.
+bool stems_name_folders(const RecordingReader& recording) {
+    const auto entries = recording.entries();
+    return !stems_repeat(recording) &&
+           std::all_of(entries.begin(), entries.end(), [](const RecordingEntry& entry) {
+               const std::string stem = fs::path(entry.file).stem().string();
+               return stem != "." && base::stays_inside(stem);
+           });
+}
+
 Error in_recording(const RecordingReader& recording, const Error& error) {
     return {error.code, recording.folder().string() + ": " + error.message};
 }
@@ -107,7 +118,7 @@ class DecodeRun {
           recording_(std::move(recording)),
           chosen_(std::move(chosen)),
           order_(std::move(order)),
-          numbered_(stems_repeat(recording_)) {}
+          numbered_(!stems_name_folders(recording_)) {}
 
     Result<void> run() {
         auto source = frame_source(recording_);
@@ -328,8 +339,8 @@ void add_decode(CLI::App& app, int& exit_status) {
         ->required();
     command->add_flag(
         "--all", options->all,
-        "Every depth image, each in a folder named as its frame (numbered where frames share "
-        "a name)");
+        "Every depth image, each in a folder named as its frame (numbered where the names "
+        "do not tell frames apart)");
     command->add_option("--order-from", options->order_from,
                         "Fringe order from a 16-bit depth image of 0.1 mm a step, or a folder of "
                         "them named as the frames; such as truth/depth, also inside REC");

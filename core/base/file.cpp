@@ -9,6 +9,8 @@
 #include <system_error>
 #include <utility>
 
+#include "core/base/text.hpp"
+
 namespace xtrack::base {
 
 namespace fs = std::filesystem;
@@ -36,6 +38,15 @@ fs::path temporary_beside(const fs::path& target) {
 // "out/" and "out" are the same folder.
 fs::path without_trailing_slash(const fs::path& path) {
     return path.has_filename() ? path : path.parent_path();
+}
+
+Result<void> check_inside(const fs::path& target, const fs::path& inside) {
+    if (!stays_inside(inside.string())) {
+        return Error{ErrorCode::invalid_argument,
+                     target.string() + ": " + base::quoted(inside.string()) +
+                         " names nothing inside the folder; give a relative name without '..'"};
+    }
+    return {};
 }
 
 Result<void> write_plainly(const fs::path& path, std::string_view bytes) {
@@ -157,6 +168,9 @@ NewFolder& NewFolder::operator=(NewFolder&& other) noexcept {
 NewFolder::~NewFolder() { discard(); }
 
 Result<void> NewFolder::make_folder(const fs::path& inside) const {
+    if (auto ok = check_inside(target_, inside); !ok) {
+        return ok;
+    }
     std::error_code error;
     fs::create_directories(temporary_ / inside, error);
     if (error) {
@@ -166,6 +180,9 @@ Result<void> NewFolder::make_folder(const fs::path& inside) const {
 }
 
 Result<void> NewFolder::write(const fs::path& inside, std::string_view bytes) const {
+    if (auto ok = check_inside(target_, inside); !ok) {
+        return ok;
+    }
     if (!write_plainly(temporary_ / inside, bytes)) {
         return io_error(target_ / inside, "cannot be written; is the disk full?");
     }

@@ -42,7 +42,8 @@ class NewFolder {
     [[nodiscard]] const std::filesystem::path& path() const noexcept { return temporary_; }
     [[nodiscard]] const std::filesystem::path& target() const noexcept { return target_; }
 
-    /// Makes a folder inside.
+    // A name that does not stay inside (stays_inside()) is refused by both.
+    /// Makes a folder inside, with those that it lies in.
     [[nodiscard]] Result<void> make_folder(const std::filesystem::path& inside) const;
     /// Writes a file inside.
     [[nodiscard]] Result<void> write(const std::filesystem::path& inside,

@@ -278,6 +278,26 @@ TEST_F(Recording, WithFilesOfOneNameKeepsEveryDepthApart) {
                    "same name");
 }
 
+// Without their extension these names are the folder itself and its parent.
+TEST_F(Recording, WithNamesOfDotsIsDecodedInsideOut) {
+    write_fringes(recording_);
+    for (const auto& [number, name] :
+         {std::pair{2, "frames/..png"}, std::pair{3, "frames/...png"}}) {
+        const fs::path file = frame_file(recording_, number);
+        replace_in(recording_ / "frames.csv", "frames/" + file.filename().string(), name);
+        fs::rename(file, recording_ / name);
+    }
+    set_text(temporary_.path() / "depth.png", "mine");
+    const Outcome outcome =
+        xtrack_command({"decode", recording_.string(), "--all", "--out", out_.string()});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(text_of(temporary_.path() / "depth.png"), "mine");
+    EXPECT_EQ(std::distance(fs::directory_iterator(temporary_.path()), fs::directory_iterator{}),
+              3);  // the recording, out, and what was there before
+    EXPECT_EQ(std::distance(fs::directory_iterator(out_), fs::directory_iterator{}), 4);
+    EXPECT_TRUE(fs::exists(out_ / "000003" / "depth.png"));
+}
+
 TEST_F(Recording, WithoutDamageIsReplayed) {
     write_joints(recording_);
     EXPECT_EQ(xtrack_command({"replay", recording_.string()}).status, 0);

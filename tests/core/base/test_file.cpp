@@ -81,6 +81,23 @@ TEST_F(FileTest, NewFolderAppearsAtCommit) {
     EXPECT_EQ(entries(), 1U);
 }
 
+TEST_F(FileTest, NewFolderWritesNothingOutside) {
+    std::ofstream(folder_ / "precious.txt") << "mine";
+    auto made = NewFolder::create(folder_ / "out");
+    ASSERT_TRUE(made.ok());
+    const std::string outside = (folder_ / "precious.txt").string();
+    for (const std::string& name : {std::string("../precious.txt"), outside, std::string()}) {
+        const auto written = made->write(name, "x");
+        ASSERT_FALSE(written.ok()) << name;
+        EXPECT_EQ(written.error().code, ErrorCode::invalid_argument) << name;
+        EXPECT_THAT(written.error().message, HasSubstr("inside the folder")) << name;
+    }
+    EXPECT_FALSE(made->make_folder("../beside").ok());
+    EXPECT_FALSE(made->make_folder("a/../../beside").ok());
+    EXPECT_FALSE(fs::exists(folder_ / "beside"));
+    EXPECT_EQ(*read_file(folder_ / "precious.txt", 9), "mine");
+}
+
 TEST_F(FileTest, NewFolderLeavesNothingWithoutCommit) {
     {
         auto made = NewFolder::create(folder_ / "out");
