@@ -118,6 +118,14 @@ Result<std::vector<RecordingEntry>> parse_frame_list(std::string_view text, cons
     if (entries.empty()) {
         return Error{ErrorCode::malformed, name + ": lists no frame; record at least one"};
     }
+    if (patterns != 0 && std::all_of(entries.begin(), entries.end(), [](const RecordingEntry& e) {
+            return e.pattern == kUnknownPattern;
+        })) {
+        return Error{ErrorCode::malformed,
+                     name +
+                         ": pattern is empty in every row, and nothing could be decoded; give the "
+                         "index into pattern.yaml's sequence where it is known"};
+    }
     return entries;
 }
 

@@ -62,13 +62,20 @@ Result<void> check_images_are_there(const fs::path& folder,
 }
 
 Result<Size> peek_size(const fs::path& file) {
-    // Headers of camera images can carry a thumbnail before the size.
+    // Headers of camera images can carry a thumbnail before the size, and seldom more than fits.
     constexpr std::size_t kPeekBytes = std::size_t{256} << 10U;
-    const auto bytes = base::read_start(file, kPeekBytes);
+    auto bytes = base::read_start(file, kPeekBytes);
     if (!bytes) {
         return bytes.error();
     }
-    const auto info = capture::peek_image(*bytes, file.string());
+    auto info = capture::peek_image(*bytes, file.string());
+    if (!info && bytes->size() == kPeekBytes) {
+        bytes = base::read_file(file, kMaxImageBytes);
+        if (!bytes) {
+            return bytes.error();
+        }
+        info = capture::peek_image(*bytes, file.string());
+    }
     if (!info) {
         return info.error();
     }
@@ -159,14 +166,6 @@ Result<RecordingReader> RecordingReader::open(const fs::path& folder) {
         return ok.error();
     }
     c.entries = std::move(*entries);
-    if (c.kind == RecordingKind::fringe &&
-        std::all_of(c.entries.begin(), c.entries.end(),
-                    [](const RecordingEntry& e) { return e.pattern == kUnknownPattern; })) {
-        return Error{ErrorCode::malformed,
-                     list.string() +
-                         ": pattern is empty in every row, and nothing could be decoded; give the "
-                         "index into pattern.yaml's sequence where it is known"};
-    }
     // Buffers are made for the images that are there, whatever rig.yaml claims.
     const fs::path first = folder / c.entries.front().file;
     const auto size = peek_size(first);

@@ -101,10 +101,11 @@ Result<void> check_next(const std::vector<RecordingEntry>& entries, Size expecte
         return bad("stamp of frame " + std::to_string(entries.size()) +
                    " goes backwards; add frames in the order of time");
     }
-    if (size.width < 1 || size.height < 1 || (expected != Size{} && size != expected)) {
+    if (!is_image_size(size) || (expected != Size{} && size != expected)) {
         return bad("size of frame " + std::to_string(entries.size()) + " is " +
                    std::to_string(size.width) + "x" + std::to_string(size.height) +
-                   "; give images of one size, the rig's camera_size");
+                   "; give images of one size, the rig's camera_size, of at most " +
+                   std::to_string(kMaxImageSide_px) + " pixels a side and 64 million in all");
     }
     return {};
 }
@@ -218,7 +219,15 @@ Result<void> RecordingWriter::close() {
         s.folder.discard();
         return bad("a recording holds at least one frame; add one before close()");
     }
-    if (auto ok = s.folder.write("frames.csv", capture::frame_list_text(s.entries)); !ok) {
+    // What the reader would refuse is not written: its own judgement, so that they cannot differ.
+    const std::string list = capture::frame_list_text(s.entries);
+    const auto read_back =
+        capture::parse_frame_list(list, "frames.csv", static_cast<std::size_t>(s.patterns));
+    if (!read_back) {
+        s.folder.discard();
+        return bad(read_back.error().message);
+    }
+    if (auto ok = s.folder.write("frames.csv", list); !ok) {
         s.folder.discard();
         return ok;
     }

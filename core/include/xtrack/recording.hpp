@@ -147,7 +147,8 @@ class RecordingWriter {
     [[nodiscard]] Result<void> add_text(const std::string& name, const std::string& text);
 
     /// Writes what is left and gives the folder its name. After this only destruction is legal.
-    /// @return an Error: no frame was added, or the disk refuses; nothing remains then
+    /// @return an Error: no frame was added, no frame of fringes names its pattern, a stamp or a
+    ///         sequence is beyond what the format holds, or the disk refuses; nothing remains then
     [[nodiscard]] Result<void> close();
 
  private:

@@ -193,6 +193,57 @@ TEST_F(RoundTrip, WriterRefusesWhatWouldNotReadBack) {
     EXPECT_THAT(RecordingWriter::create(folder_ / "rec", {small_rig(), {}, 1001.0}).error().message,
                 HasSubstr("from 0.001 to 1000"));
     EXPECT_TRUE(RecordingWriter::create(folder_ / "rec", {{}, {}}).ok());
+    // Without a rig the bounds of images hold all the same.
+    auto without_rig = RecordingWriter::create(folder_ / "rec", {{}, patterns});
+    ASSERT_TRUE(without_rig.ok());
+    Frame long_row = small_frame(0, 0);
+    long_row.pixels.resize(kMaxImageSide_px + 1, 1);
+    EXPECT_THAT(without_rig->add(long_row).error().message, HasSubstr("size of frame 0"));
+    DepthFrame long_depth;
+    long_depth.depth.resize(kMaxImageSide_px + 1, 1);
+    auto of_depth = RecordingWriter::create(folder_ / "rec", {{}, {}});
+    EXPECT_THAT(of_depth->add(long_depth).error().message, HasSubstr("size of frame 0"));
+}
+
+TEST_F(RoundTrip, WriterClosesNothingThatWouldNotReadBack) {
+    Frame no_pattern_known = small_frame(0, kUnknownPattern);
+    Frame large_sequence = small_frame(0, 0);
+    large_sequence.sequence = std::uint64_t{1} << 60U;
+    for (const auto& [frame, said] : {std::pair{no_pattern_known, "pattern is empty"},
+                                      std::pair{large_sequence, "line 2: sequence"}}) {
+        auto writer = RecordingWriter::create(
+            folder_ / "rec", {{}, three_step_sequence(Axis::x, {1024, 768}, 16.0)});
+        ASSERT_TRUE(writer.ok());
+        ASSERT_TRUE(writer->add(frame).ok());
+        const auto closed = writer->close();
+        ASSERT_FALSE(closed.ok()) << said;
+        EXPECT_EQ(closed.error().code, ErrorCode::invalid_argument);
+        EXPECT_THAT(closed.error().message, HasSubstr(said));
+        EXPECT_TRUE(fs::is_empty(folder_));
+    }
+}
+
+// Cameras put previews and colour profiles before the header that says the size.
+TEST_F(RoundTrip, ALongHeadBeforeTheSizeIsReadOver) {
+    {
+        auto writer = RecordingWriter::create(
+            folder_ / "rec", {small_rig(), three_step_sequence(Axis::x, {1024, 768}, 16.0)});
+        ASSERT_TRUE(writer.ok());
+        ASSERT_TRUE(writer->add(small_frame(0, 0)).ok());
+        ASSERT_TRUE(writer->close().ok());
+    }
+    const std::string segment = "\xFF\xE1\xFF\xFF" + std::string(65533, 'x');
+    std::string jpeg = "\xFF\xD8";
+    for (int i = 0; i < 5; ++i) {
+        jpeg += segment;
+    }
+    const std::string header("\xFF\xC0\0\x0B\x08\0\x0C\0\x10\x01\x01\x11\0", 13);
+    set_text(folder_ / "rec" / "frames" / "000000.png", jpeg + header + "\xFF\xD9");
+    const auto recording = RecordingReader::open(folder_ / "rec");
+    ASSERT_TRUE(recording.ok()) << recording.error().message;
+    EXPECT_EQ(recording->image_size(), (Size{16, 12}));
+    set_text(folder_ / "rec" / "frames" / "000000.png", jpeg + segment);
+    EXPECT_THAT(RecordingReader::open(folder_ / "rec").error().message, HasSubstr("000000.png"));
 }
 
 TEST(NullSource, IsOverBeforeItBegins) {
