@@ -176,8 +176,11 @@ Result<DepthDecoder> DepthDecoder::create(const Rig& rig, const PatternSequence&
     if (auto valid = validate(settings); !valid) {
         return valid.error();
     }
-    if (image.width < 1 || image.height < 1) {
-        return Error{ErrorCode::invalid_argument, "images must have at least one pixel"};
+    if (!is_image_size(image)) {
+        return Error{ErrorCode::invalid_argument,
+                     "images of " + std::to_string(image.width) + "x" +
+                         std::to_string(image.height) + " pixels; give 1 to " +
+                         std::to_string(kMaxImageSide_px) + " a side, and 64 million in all"};
     }
     auto plan = DecodePlan::create(patterns, settings);
     if (!plan) {

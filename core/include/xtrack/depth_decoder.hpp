@@ -69,8 +69,9 @@ class DepthDecoder {
     /// @param image width and height of the frames that will be pushed, px
     /// @return unsupported for sequences this decoder has no method for (colour fringes, a period
     ///         whose order nothing gives, a Gray code alone where no order is wanted);
-    ///         invalid_argument for settings out of range, singular geometry, a rig without
-    ///         projector, a projector size that disagrees with the pattern
+    ///         invalid_argument for settings out of range, an image that is_image_size() does not
+    ///         hold for, singular geometry, a rig without projector, a projector size that
+    ///         disagrees with the pattern; io where memory runs out
     [[nodiscard]] static Result<DepthDecoder> create(const Rig& rig,
                                                      const PatternSequence& patterns, Size image,
                                                      const DecodeSettings& settings);

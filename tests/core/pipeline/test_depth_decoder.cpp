@@ -277,5 +277,20 @@ TEST(DepthDecoder, DecodesPhaseAloneWithoutARig) {
     EXPECT_NEAR(made->phase().modulation.at(40, 30), 90.0F, 1.0F);
 }
 
+// Before any buffer is made for them: these sizes overflow, or no memory holds them.
+TEST(DepthDecoder, SizesThatNoImageHasAreRefused) {
+    DecodeSettings settings;
+    settings.order = OrderSource::none;
+    const PatternSequence patterns = three_step_sequence(Axis::x, {512, 384}, 512.0);
+    for (const Size size :
+         {Size{0, 48}, Size{64, -1}, Size{1 << 28, 1 << 28}, Size{16384, 16384}, Size{16385, 1}}) {
+        const auto made = DepthDecoder::create({}, patterns, size, settings);
+        ASSERT_FALSE(made) << size.width << "x" << size.height;
+        EXPECT_EQ(made.error().code, ErrorCode::invalid_argument);
+        EXPECT_NE(made.error().message.find(std::to_string(size.width) + "x"), std::string::npos)
+            << made.error().message;
+    }
+}
+
 }  // namespace
 }  // namespace xtrack

@@ -49,20 +49,5 @@ TEST(NoAllocation, DecodingAllocatesNothing) {
     }
 }
 
-TEST(NoAllocation, ImagesThatNoMemoryHoldsAreRefused) {
-    if (!test::counts_allocations()) {
-        GTEST_SKIP() << "a sanitizer ends the program where memory runs out";
-    }
-    DecodeSettings settings;
-    settings.order = OrderSource::none;
-    const auto made = DepthDecoder::create({}, three_step_sequence(Axis::x, {512, 384}, 512.0),
-                                           {1 << 28, 1 << 28}, settings);
-    ASSERT_FALSE(made);
-    EXPECT_EQ(made.error().code, ErrorCode::unsupported);
-    EXPECT_NE(made.error().message.find("268435456x268435456 pixels need more memory"),
-              std::string::npos)
-        << made.error().message;
-}
-
 }  // namespace
 }  // namespace xtrack
