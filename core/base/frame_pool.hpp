@@ -13,7 +13,7 @@ namespace xtrack::base {
 /// as no weak_ptr outlives its frame). Frames may outlive the pool.
 ///
 /// Bound: `capacity` frames. It never waits: acquire() gives null when all are lent, and the caller
-/// says what is dropped (sources drop the new frame).
+/// says what happens then (our sources make a frame of its own: callers may keep what they get).
 /// @thread any thread may acquire and release
 class FramePool {
  public:

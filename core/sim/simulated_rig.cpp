@@ -13,8 +13,8 @@
 namespace xtrack {
 namespace {
 
-// Frames that consumers may hold at once before new ones are dropped: what a decoder keeps of every
-// pattern, and a queue.
+// Frames that consumers may hold at once before the heap is asked for more: what a decoder keeps of
+// every pattern, and a queue. Beyond this a frame of its own is made: a simulation drops nothing.
 constexpr std::size_t kPoolFramesPerPattern = 4;
 constexpr std::size_t kPoolFrames = 12;
 // After the last step: time for the last events to be decided.
@@ -92,10 +92,11 @@ FrameSource::Item SimulatedRig::next(Duration /*timeout*/) {
     }
     std::shared_ptr<Frame> frame = s.pool.acquire();
     if (frame == nullptr) {
-        // A camera whose buffers are all taken loses frames: the gap shows in the sequence.
-        ++s.next_frame;
-        item.status = SourceStatus::timeout;
-        return item;
+        const SimCamera& camera = s.settings.camera;
+        const Size size = s.settings.rig.camera.size;
+        frame = std::make_shared<Frame>();
+        frame->format = camera.colour ? PixelFormat::bgr8 : PixelFormat::grey8;
+        frame->pixels.resize(size.width * frame->channels(), size.height);
     }
     const std::uint64_t sequence = s.next_frame++;
     const PatternAssignment seen = s.renderer.timing().assign(sequence);

@@ -197,7 +197,8 @@ class SimulatedRig final : public FrameSource {
 
     [[nodiscard]] const Rig& rig() const override;
     [[nodiscard]] const PatternSequence& patterns() const override;
-    /// The next frame, or `end`. Never waits; no heap allocation once frames come back to the pool.
+    /// The next frame, or `end`. Never waits and drops none; no heap allocation unless the caller
+    /// keeps so many frames that the pool is empty.
     Item next(Duration timeout) override;
     /// Half the exposure and half the readout.
     [[nodiscard]] Duration delivery_delay() const override;
