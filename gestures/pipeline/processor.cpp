@@ -36,9 +36,6 @@ Result<Processor> Processor::for_frames(const Rig& rig, const PatternSequence& p
 }
 
 Result<Processor> Processor::for_depth(const Rig& rig, const SessionOptions& options) {
-    if (auto valid = validate(rig); !valid) {
-        return valid.error();
-    }
     auto recogniser = GestureRecogniser::create(options.gestures);
     if (!recogniser) {
         return recogniser.error();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -22,6 +23,25 @@ constexpr Size kSizeMax{1920, 1200};
 constexpr Duration kPriorAge = std::chrono::milliseconds{120};
 
 Error bad(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
+struct Number {
+    const char* name;
+    double TrackerSettings::*value;
+};
+
+using S = TrackerSettings;
+constexpr std::array kNumbers{
+    Number{"near_mm", &S::near_mm},
+    Number{"far_mm", &S::far_mm},
+    Number{"palm_radius_min_mm", &S::palm_radius_min_mm},
+    Number{"palm_radius_max_mm", &S::palm_radius_max_mm},
+    Number{"hand_length_max_mm", &S::hand_length_max_mm},
+    Number{"hand_area_min_mm2", &S::hand_area_min_mm2},
+    Number{"ahead_of_body_mm", &S::ahead_of_body_mm},
+    Number{"background_margin_mm", &S::background_margin_mm},
+    Number{"reacquire_distance_mm", &S::reacquire_distance_mm},
+    Number{"tip_prominence_mm", &S::tip_prominence_mm},
+};
+
 
 }  // namespace
 
@@ -119,9 +139,22 @@ Result<HandTracker> HandTracker::create(const Rig& rig, Size size,
                    std::to_string(size.height) + "; 80x60 to 1920x1200 are possible");
     }
     if (!(rig.camera.matrix(0, 0) > 1.0) || !(rig.camera.matrix(1, 1) > 1.0)) {
+    Rig checked = rig;
+    if (checked.camera.size == Size{}) {
+        checked.camera.size = size;  // not set: that of the images
+    }
+    if (auto valid = validate(checked); !valid) {
+        return bad("hand tracker: " + valid.error().message);
+    }
         return bad("hand tracker: camera_matrix: the focal length must be above 1 px; calibrate");
     }
     if (settings.max_hands < 1 || settings.max_hands > static_cast<int>(kMaxHands)) {
+    for (const Number& number : kNumbers) {
+        if (!std::isfinite(settings.*number.value)) {
+            return bad(std::string("hand tracker: ") + number.name +
+                       " is NaN or infinite; give a finite number");
+        }
+    }
         return bad("hand tracker: max_hands must be 1 or 2");
     }
     if (!(settings.palm_radius_min_mm > 0.0) ||

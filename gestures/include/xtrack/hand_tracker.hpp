@@ -36,7 +36,8 @@ class HandTracker {
     /// @param rig camera intrinsics and distortion are used; `rig.camera.size`, where set and
     ///        different from `size`, scales them
     /// @param size of the depth images, px; from 80 x 60 to 1920 x 1200
-    /// @errors invalid_argument: size, intrinsics or a setting out of range
+    /// @errors invalid_argument: a size or a setting out of range, a rig that validate() refuses;
+    ///         io: memory runs out
     [[nodiscard]] static Result<HandTracker> create(const Rig& rig, Size size,
                                                     const TrackerSettings& settings = {});
 

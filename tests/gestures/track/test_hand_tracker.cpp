@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include <xtrack/hand_tracker.hpp>
@@ -288,6 +290,30 @@ TEST(HandTracker, WrongInputIsRefused) {
     TrackerSettings settings;
     settings.max_hands = 3;
     EXPECT_FALSE(HandTracker::create(scene.rig, {640, 480}, settings).ok());
+}
+
+TEST(HandTracker, RefusesNumbersThatAreNone) {
+    const Scene scene;
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    using S = TrackerSettings;
+    for (double S::*number :
+         {&S::near_mm, &S::far_mm, &S::palm_radius_min_mm, &S::palm_radius_max_mm,
+          &S::hand_length_max_mm, &S::hand_area_min_mm2, &S::ahead_of_body_mm,
+          &S::background_margin_mm, &S::reacquire_distance_mm, &S::tip_prominence_mm}) {
+        TrackerSettings settings;
+        settings.*number = kNan;
+        const auto made = HandTracker::create(scene.rig, {640, 480}, settings);
+        ASSERT_FALSE(made.ok());
+        EXPECT_NE(made.error().message.find("NaN"), std::string::npos) << made.error().message;
+    }
+    Rig rig = scene.rig;
+    rig.camera.matrix(0, 2) = kNan;
+    const auto made = HandTracker::create(rig, {640, 480});
+    ASSERT_FALSE(made.ok());
+    EXPECT_NE(made.error().message.find("camera_matrix"), std::string::npos);
+    rig = scene.rig;
+    rig.camera.size = {};  // that of the depth images
+    EXPECT_TRUE(HandTracker::create(rig, {640, 480}).ok());
 }
 
 TEST(HandTracker, RestingHandIsNotLearnt) {
