@@ -34,7 +34,8 @@ constexpr Range kEnterS{1.3, 1.7};
 constexpr Range kBetweenGesturesS{0.35, 0.80};
 constexpr double kStrokeTiltRad = 0.09;  // a swipe is not level: up to 5 degrees
 
-// The definitions that `commit` follows.
+// The definitions that `commit` follows. The recogniser asks for more on purpose (a push of 370
+// mm/s, a pinch of 80 ms), so part of the delay after `commit` that a demo shows is meant.
 constexpr double kSwipeCandidateMmps = 200.0;
 constexpr double kSwipeMeanMmps = 300.0;
 constexpr double kSwipeMm = 100.0;
