@@ -6,6 +6,7 @@
 #include <xtrack/recording.hpp>
 
 #include "core/base/file.hpp"
+#include "core/base/setting_up.hpp"
 #include "core/capture/frame_list.hpp"
 #include "core/capture/image_check.hpp"
 #include "core/capture/image_codec.hpp"
@@ -91,6 +92,10 @@ Result<Size> peek_size(const fs::path& file) {
 }  // namespace
 
 Result<RecordingReader> RecordingReader::open(const fs::path& folder) {
+    return base::setting_up("RecordingReader::open", [&] { return read(folder); });
+}
+
+Result<RecordingReader> RecordingReader::read(const fs::path& folder) {
     std::error_code ignored;
     if (!fs::is_directory(folder, ignored)) {
         return Error{ErrorCode::not_found,

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstddef>
-#include <new>
 #include <utility>
 
 #include <xtrack/recording.hpp>
 
 #include "core/base/frame_pool.hpp"
+#include "core/base/setting_up.hpp"
 
 namespace xtrack {
 
@@ -100,19 +100,18 @@ Result<std::unique_ptr<FrameSource>> frame_source(const RecordingReader& recordi
     if (recording.kind() != RecordingKind::fringe) {
         return unsupported(recording, "holds no fringes; give a recording with a pattern.yaml");
     }
-    try {
+    return base::setting_up("frame_source", [&]() -> Result<std::unique_ptr<FrameSource>> {
         return std::unique_ptr<FrameSource>(std::make_unique<RecordedFrames>(recording));
-    } catch (const std::bad_alloc&) {
-        return unsupported(recording,
-                           "has images that need more memory than there is; scale them down");
-    }
+    });
 }
 
 Result<std::unique_ptr<DepthSource>> depth_source(const RecordingReader& recording) {
     if (recording.kind() != RecordingKind::depth) {
         return unsupported(recording, "holds no depth; give a recording of 16-bit depth images");
     }
-    return std::unique_ptr<DepthSource>(std::make_unique<RecordedDepth>(recording));
+    return base::setting_up("depth_source", [&]() -> Result<std::unique_ptr<DepthSource>> {
+        return std::unique_ptr<DepthSource>(std::make_unique<RecordedDepth>(recording));
+    });
 }
 
 }  // namespace xtrack

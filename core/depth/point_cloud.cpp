@@ -4,24 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/setting_up.hpp"
 #include "core/depth/distortion.hpp"
 
 namespace xtrack {
 
-Result<PointCloud> make_point_cloud(const DepthFrame& depth, const Rig& rig,
-                                    ImageView<const float> grey) {
+namespace {
+
+PointCloud fill(const DepthFrame& depth, const Rig& rig, ImageView<const float> grey) {
     const Image<std::uint16_t>& image = depth.depth;
-    if (!grey.empty() && grey.size() != image.size()) {
-        return Error{ErrorCode::invalid_argument,
-                     "point cloud: the colour image and the depth image differ in size"};
-    }
-    if (rig.camera.size != image.size()) {
-        return Error{ErrorCode::invalid_argument,
-                     "point cloud: the depth image is not of the rig's camera_size"};
-    }
-    if (auto valid = validate(rig); !valid) {
-        return Error{ErrorCode::invalid_argument, "rig: " + valid.error().message};
-    }
     PointCloud cloud;
     cloud.metric = depth.metric;
     std::size_t count = 0;
@@ -50,6 +41,26 @@ Result<PointCloud> make_point_cloud(const DepthFrame& depth, const Rig& rig,
         }
     }
     return cloud;
+}
+
+}  // namespace
+
+Result<PointCloud> make_point_cloud(const DepthFrame& depth, const Rig& rig,
+                                    ImageView<const float> grey) {
+    const Image<std::uint16_t>& image = depth.depth;
+    if (!grey.empty() && grey.size() != image.size()) {
+        return Error{ErrorCode::invalid_argument,
+                     "point cloud: the colour image and the depth image differ in size"};
+    }
+    if (rig.camera.size != image.size()) {
+        return Error{ErrorCode::invalid_argument,
+                     "point cloud: the depth image is not of the rig's camera_size"};
+    }
+    if (auto valid = validate(rig); !valid) {
+        return Error{ErrorCode::invalid_argument, "rig: " + valid.error().message};
+    }
+    return base::setting_up("make_point_cloud",
+                            [&]() -> Result<PointCloud> { return fill(depth, rig, grey); });
 }
 
 }  // namespace xtrack

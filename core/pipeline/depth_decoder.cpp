@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <new>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/base/setting_up.hpp"
 #include "core/decode/decode_row.hpp"
 #include "core/pipeline/depth_decoder_impl.hpp"
 #include "core/unwrap/gray_code.hpp"
@@ -191,18 +191,13 @@ Result<DepthDecoder> DepthDecoder::create(const Rig& rig, const PatternSequence&
         return Error{ErrorCode::invalid_argument,
                      "projector_size of the rig and of the pattern sequence differ"};
     }
-    try {
+    return base::setting_up("DepthDecoder::create", [&]() -> Result<DepthDecoder> {
         auto impl = std::make_unique<Impl>(*std::move(plan), settings, image);
         if (auto ready = impl->prepare(rig); !ready) {
             return ready.error();
         }
         return DepthDecoder(std::move(impl));
-    } catch (const std::bad_alloc&) {
-        return Error{ErrorCode::unsupported, "images of " + std::to_string(image.width) + "x" +
-                                                 std::to_string(image.height) +
-                                                 " pixels need more memory than there is; scale "
-                                                 "them down"};
-    }
+    });
 }
 
 DepthDecoder::DepthDecoder(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}

@@ -6,6 +6,7 @@
 #include <xtrack/sim.hpp>
 
 #include "core/base/frame_pool.hpp"
+#include "core/base/setting_up.hpp"
 #include "core/sim/renderer.hpp"
 #include "core/sim/sensor.hpp"
 #include "core/sim/truth.hpp"
@@ -65,7 +66,9 @@ Result<std::unique_ptr<SimulatedRig>> SimulatedRig::create(const SimSettings& se
     if (auto ok = settings.validate(); !ok) {
         return ok.error();
     }
-    return std::unique_ptr<SimulatedRig>(new SimulatedRig(std::make_unique<Impl>(settings)));
+    return base::setting_up("SimulatedRig::create", [&]() -> Result<std::unique_ptr<SimulatedRig>> {
+        return std::unique_ptr<SimulatedRig>(new SimulatedRig(std::make_unique<Impl>(settings)));
+    });
 }
 
 const Rig& SimulatedRig::rig() const { return impl_->settings.rig; }

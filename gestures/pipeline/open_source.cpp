@@ -11,7 +11,7 @@
 #include <xtrack/recording.hpp>
 #endif
 
-#include "gestures/pipeline/setting_up.hpp"
+#include "core/base/setting_up.hpp"
 
 namespace xtrack {
 
@@ -91,7 +91,7 @@ Result<Session> open_recording(const std::filesystem::path& folder, const Sessio
 }  // namespace
 
 Result<Session> Session::open(std::string_view source, const SessionOptions& options) {
-    return setting_up("Session::open", [&] {
+    return base::setting_up("Session::open", [&] {
         if (source == kSimulator) {
             return open_simulator(kDefaultPreset, options);
         }

@@ -13,11 +13,11 @@
 #include <utility>
 
 #include "core/base/mutex.hpp"
+#include "core/base/setting_up.hpp"
 #include "core/base/time_histogram.hpp"
 #include "gestures/pipeline/input.hpp"
 #include "gestures/pipeline/input_queue.hpp"
 #include "gestures/pipeline/processor.hpp"
-#include "gestures/pipeline/setting_up.hpp"
 #include "gestures/pipeline/stream_clock.hpp"
 #include "gestures/session/event_queue.hpp"
 #include "gestures/session/subscribers.hpp"
@@ -322,7 +322,7 @@ auto Session::Impl::guarded(Call&& call) noexcept -> decltype(call()) {
         }
         return result;
     } catch (const std::bad_alloc&) {
-        failure = out_of_memory("Session");
+        failure = base::out_of_memory("Session");
     } catch (const std::exception& e) {
         failure = Error{ErrorCode::invalid_argument, std::string("a callback threw: ") + e.what()};
     } catch (...) {
@@ -382,7 +382,7 @@ Session::~Session() {
 template <typename Source, typename MakeProcessor>
 Result<Session> Session::Impl::session_of(std::unique_ptr<Source> source, Pace pace,
                                           const MakeProcessor& make_processor) noexcept {
-    return setting_up("Session::create", [&]() -> Result<Session> {
+    return base::setting_up("Session::create", "the source threw", [&]() -> Result<Session> {
         if (!source) {
             return Error{ErrorCode::invalid_argument, "Session::create: the source is null"};
         }

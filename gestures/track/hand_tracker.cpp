@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "core/base/setting_up.hpp"
 #include "gestures/segment/segmenter.hpp"
 #include "gestures/track/fingers.hpp"
 #include "gestures/track/hand_track.hpp"
@@ -22,7 +23,6 @@ constexpr Size kSizeMax{1920, 1200};
 /// its looks count.
 constexpr Duration kPriorAge = std::chrono::milliseconds{120};
 
-Error bad(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
 struct Number {
     const char* name;
     double TrackerSettings::*value;
@@ -42,6 +42,7 @@ constexpr std::array kNumbers{
     Number{"tip_prominence_mm", &S::tip_prominence_mm},
 };
 
+Error bad(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
 
 }  // namespace
 
@@ -138,7 +139,6 @@ Result<HandTracker> HandTracker::create(const Rig& rig, Size size,
         return bad("hand tracker: depth images of " + std::to_string(size.width) + "x" +
                    std::to_string(size.height) + "; 80x60 to 1920x1200 are possible");
     }
-    if (!(rig.camera.matrix(0, 0) > 1.0) || !(rig.camera.matrix(1, 1) > 1.0)) {
     Rig checked = rig;
     if (checked.camera.size == Size{}) {
         checked.camera.size = size;  // not set: that of the images
@@ -146,15 +146,16 @@ Result<HandTracker> HandTracker::create(const Rig& rig, Size size,
     if (auto valid = validate(checked); !valid) {
         return bad("hand tracker: " + valid.error().message);
     }
+    if (!(rig.camera.matrix(0, 0) > 1.0) || !(rig.camera.matrix(1, 1) > 1.0)) {
         return bad("hand tracker: camera_matrix: the focal length must be above 1 px; calibrate");
     }
-    if (settings.max_hands < 1 || settings.max_hands > static_cast<int>(kMaxHands)) {
     for (const Number& number : kNumbers) {
         if (!std::isfinite(settings.*number.value)) {
             return bad(std::string("hand tracker: ") + number.name +
                        " is NaN or infinite; give a finite number");
         }
     }
+    if (settings.max_hands < 1 || settings.max_hands > static_cast<int>(kMaxHands)) {
         return bad("hand tracker: max_hands must be 1 or 2");
     }
     if (!(settings.palm_radius_min_mm > 0.0) ||
@@ -165,12 +166,14 @@ Result<HandTracker> HandTracker::create(const Rig& rig, Size size,
         (settings.far_mm > 0.0 && settings.far_mm <= settings.near_mm)) {
         return bad("hand tracker: near_mm and far_mm must satisfy 0 <= near < far");
     }
-    auto state = std::make_unique<State>();
-    state->settings = settings;
-    state->size = size;
-    state->segmenter.create(rig, size, settings);
-    state->reader.create(state->segmenter.grid());
-    return HandTracker(std::move(state));
+    return base::setting_up("HandTracker::create", [&]() -> Result<HandTracker> {
+        auto state = std::make_unique<State>();
+        state->settings = settings;
+        state->size = size;
+        state->segmenter.create(rig, size, settings);
+        state->reader.create(state->segmenter.grid());
+        return HandTracker(std::move(state));
+    });
 }
 
 const HandFrame& HandTracker::track(const DepthFrame& depth) {

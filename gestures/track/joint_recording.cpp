@@ -9,6 +9,7 @@
 
 #include "core/base/csv.hpp"
 #include "core/base/file.hpp"
+#include "core/base/setting_up.hpp"
 
 namespace xtrack {
 
@@ -187,11 +188,13 @@ Result<std::vector<HandFrame>> parse_joint_recording(std::string_view text,
 }
 
 Result<std::vector<HandFrame>> read_joint_recording(const std::filesystem::path& file) {
-    const auto text = base::read_file(file, kMaxFileBytes);
-    if (!text) {
-        return text.error();
-    }
-    return parse_joint_recording(*text, file.string());
+    return base::setting_up("read_joint_recording", [&]() -> Result<std::vector<HandFrame>> {
+        const auto text = base::read_file(file, kMaxFileBytes);
+        if (!text) {
+            return text.error();
+        }
+        return parse_joint_recording(*text, file.string());
+    });
 }
 
 namespace {

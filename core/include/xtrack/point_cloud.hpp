@@ -25,7 +25,8 @@ struct PointCloud {
 /// @param depth any depth image of the rig's camera; relative depth gives a relative cloud
 /// @param rig the camera's intrinsics and distortion; nothing else of it is read
 /// @param grey image of the same size that colours the points, grey 0 ... 255; may be empty
-/// @return invalid_argument when sizes disagree or the camera matrix is singular
+/// @return invalid_argument when sizes disagree or the camera matrix is singular; io where
+///         memory runs out
 /// @thread any
 /// @ownership borrows the arguments for the call
 /// @since 0.1

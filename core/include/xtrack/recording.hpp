@@ -93,6 +93,7 @@ class RecordingReader {
  private:
     struct Content;
     RecordingReader() = default;
+    [[nodiscard]] static Result<RecordingReader> read(const std::filesystem::path& folder);
     [[nodiscard]] Result<void> read_truth(const char* kind, std::size_t index,
                                           std::filesystem::path& file) const;
     std::shared_ptr<const Content> content_;

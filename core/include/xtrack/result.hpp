@@ -13,7 +13,7 @@ namespace xtrack {
 enum class ErrorCode {
     invalid_argument,  ///< the caller's value is out of its documented range
     not_found,         ///< a file, device or part that was named is not there
-    io,                ///< the operating system refused to read or write
+    io,                ///< the operating system refused to read, to write, or to give memory
     malformed,         ///< outside data breaks its format
     unsupported,       ///< valid, but this build or this method cannot do it
     device_lost,       ///< a device went away while in use

@@ -190,7 +190,7 @@ struct SimTruth {
 class SimulatedRig final : public FrameSource {
  public:
     /// Builds the scene: about 0.3 s.
-    /// Errors: those of SimSettings::validate().
+    /// Errors: those of SimSettings::validate(); io where memory runs out.
     /// @thread any @since 0.1
     [[nodiscard]] static Result<std::unique_ptr<SimulatedRig>> create(const SimSettings& settings);
     ~SimulatedRig() override;
