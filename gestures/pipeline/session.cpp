@@ -28,7 +28,7 @@ namespace {
 
 using Wall = StreamClock::Wall;
 
-// Lost hands are noticed by the clock, at 50 Hz when no item comes.
+// A device's lost hands are noticed by the clock, and stop() by all, at 50 Hz when no item comes.
 constexpr Duration kTick = std::chrono::milliseconds(20);
 // Deadlines are now + time-out: "for ever" must not overflow them.
 constexpr Duration kLongestWait = std::chrono::hours(1);
@@ -50,8 +50,8 @@ struct Session::Impl {
     static Result<Session> session_of(std::unique_ptr<Source> source, Pace pace,
                                       const MakeProcessor& make_processor) noexcept;
 
-    /// Sets when an item is due that was asked for at `asked` and is there now.
-    void admit(InputItem& read, Wall::time_point asked);
+    /// Asks the source, and sets when the item is due. False, `timeout` later, where it has none.
+    bool read(Duration timeout, InputItem& into);
     /// The next item if one is due within `timeout`, read in the calling thread.
     bool read_due(Duration timeout);
     /// The item through the pipeline, its events to the subscribers.
@@ -75,6 +75,7 @@ struct Session::Impl {
     bool item_waits = false;  ///< read, but not due yet
     bool finished = false;    ///< open gestures have ended or were cancelled
     std::optional<Error> failure;
+    Wall::duration reading{};  ///< spent on asking the source since it last gave an item
     Stamp newest;
     Wall::time_point newest_due;
     std::optional<Wall::time_point> newest_taken;  ///< when the item with that stamp was taken
@@ -98,25 +99,33 @@ struct Session::Impl {
     TimeHistogram latency XTRACK_GUARDED_BY(statistics_mutex);
 };
 
-void Session::Impl::admit(InputItem& read, Wall::time_point asked) {
-    clock.begin(read.stamp);
-    clock.note_read(read.stamp, asked, Wall::now());
-    read.due = clock.due(read.stamp);
+bool Session::Impl::read(Duration timeout, InputItem& into) {
+    const auto asked = Wall::now();
+    input.read(timeout, into);
+    const bool nothing = into.status == SourceStatus::lost || into.status == SourceStatus::timeout;
+    if (nothing) {
+        // Sources may say so at once: to ask again then would spin.
+        (void)queue.wait_until(asked + timeout);
+    }
+    const auto got = Wall::now();
+    reading += got - asked;
+    if (into.status == SourceStatus::ok) {
+        clock.begin(into.stamp);
+        clock.note_read(into.stamp, std::exchange(reading, {}), got);
+        into.due = clock.due(into.stamp);
+    }
+    return !nothing;
 }
 
 bool Session::Impl::read_due(Duration timeout) {
     const auto asked = Wall::now();
     if (!item_waits) {
-        input.read(pace == Pace::own_pace ? Duration::zero() : timeout, item);
-        if (item.status == SourceStatus::lost || item.status == SourceStatus::timeout) {
-            queue.wait_until(asked +
-                             timeout);  // sources may say so at once: to ask again would spin
+        if (!read(timeout, item)) {
             return false;
         }
         if (item.status != SourceStatus::ok) {
             return true;
         }
-        admit(item, asked);
         item_waits = true;
     }
     const auto due = item.due;
@@ -151,8 +160,10 @@ void Session::Impl::deliver(std::span<const GestureEvent> events) {
 
 void Session::Impl::tick() {
     // What counts is how long ago the newest item came, not how old its stamp is: a source that
-    // delivers 150 ms late has not lost the hand. In a replay no time passes between items.
-    if (newest_taken && pace != Pace::replay) {
+    // delivers 150 ms late has not lost the hand. Only a device's time goes on without items: what
+    // a recording or a simulator shows next says itself how long the hand was away, however long
+    // that takes to make.
+    if (newest_taken && pace == Pace::live) {
         deliver(processor.advance(newest + (Wall::now() - *newest_taken)));
     }
 }
@@ -227,25 +238,16 @@ Result<StepStatus> Session::Impl::step(Duration timeout) {
 }
 
 void Session::Impl::read_live() {
-    InputItem read;
+    InputItem next;
     while (!queue.closed()) {
-        const auto asked = Wall::now();
-        input.read(kTick, read);
-        if (read.status == SourceStatus::timeout) {
+        if (!read(kTick, next)) {
             continue;
         }
-        if (read.status == SourceStatus::lost) {
-            (void)queue.wait_until(Wall::now() + kTick);
-            continue;
+        const bool last = next.status == SourceStatus::end || next.status == SourceStatus::failed;
+        if (!last && next.due > Wall::now() && !queue.wait_until(next.due)) {
+            return;
         }
-        const bool last = read.status == SourceStatus::end || read.status == SourceStatus::failed;
-        if (read.status == SourceStatus::ok) {
-            admit(read, asked);
-            if (read.due > Wall::now() && !queue.wait_until(read.due)) {
-                return;
-            }
-        }
-        queue.push(read);
+        queue.push(next);
         if (last) {
             return;
         }

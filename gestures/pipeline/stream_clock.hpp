@@ -30,10 +30,11 @@ class StreamClock {
 
     /// Tells how long the source took to make an item. A simulator may be slower than the time it
     /// simulates, as no camera is: for as long as that made the item late the clock stands still.
-    /// What is late for any other reason stays so. @pre begin()
-    void note_read(Stamp stamp, Wall::time_point asked, Wall::time_point got) {
+    /// What is late for any other reason stays so.
+    /// @param took all that was spent on asking for it, time-outs in between included @pre begin()
+    void note_read(Stamp stamp, Wall::duration took, Wall::time_point got) {
         if (pace_ == Pace::own_pace) {
-            start_ += std::clamp(got - due(stamp), Wall::duration::zero(), got - asked);
+            start_ += std::clamp(got - due(stamp), Wall::duration::zero(), took);
         }
     }
 

@@ -15,6 +15,7 @@
 #include <functional>
 #include <memory>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -341,18 +342,96 @@ TEST(Session, HandsThatBreakTheirPromiseAreRefused) {
     EXPECT_NE(too_many.error().message.find("at most 2"), std::string::npos);
 }
 
-TEST(Session, ALostSourceIsAskedAgainAndNotAllTheTime) {
-    for (const Pace pace : {Pace::replay, Pace::live}) {
-        int asked = 0;
-        auto session = callers_session(
-            [&](HandFrame&) { return ++asked < 5 ? SourceStatus::lost : SourceStatus::end; }, pace);
-        ASSERT_TRUE(session);
-        const auto begin = std::chrono::steady_clock::now();
-        EXPECT_TRUE(session->run());
-        EXPECT_EQ(asked, 5);
-        EXPECT_GE(std::chrono::steady_clock::now() - begin, 4 * 20ms);
-        EXPECT_EQ(session->statistics().dropped, 0U);
+TEST(Session, ASourceThatHasNothingIsAskedAgainAndNotAllTheTime) {
+    for (const SourceStatus nothing : {SourceStatus::lost, SourceStatus::timeout}) {
+        for (const Pace pace : {Pace::replay, Pace::own_pace, Pace::live}) {
+            int asked = 0;
+            auto session = callers_session(
+                [&](HandFrame&) { return ++asked < 5 ? nothing : SourceStatus::end; }, pace);
+            ASSERT_TRUE(session);
+            const auto begin = std::chrono::steady_clock::now();
+            ASSERT_TRUE(session->start());
+            EXPECT_TRUE(session->wait());
+            EXPECT_EQ(asked, 5);
+            EXPECT_GE(std::chrono::steady_clock::now() - begin, 4 * 20ms);
+            EXPECT_EQ(session->statistics().dropped, 0U);
+        }
     }
+}
+
+/// A hand that is held up for a while before one of its frames: within the call, or as a source
+/// that keeps its time-outs says it.
+class StallingHand final : public HandSource {
+ public:
+    StallingHand(int before, Duration stall, bool keeps_timeouts)
+        : before_(before), stall_(stall), keeps_timeouts_(keeps_timeouts) {}
+
+    SourceStatus next(Duration timeout, HandFrame& out, std::string& message) override {
+        if (given_ == before_) {
+            const auto now = std::chrono::steady_clock::now();
+            const auto until = until_.value_or(now + stall_);
+            until_ = until;
+            const auto left = until - now;
+            if (keeps_timeouts_ && left > timeout) {
+                std::this_thread::sleep_for(timeout);
+                return SourceStatus::timeout;
+            }
+            std::this_thread::sleep_for(left);
+        }
+        ++given_;
+        return hand_.next(timeout, out, message);
+    }
+
+ private:
+    int before_;
+    Duration stall_;
+    bool keeps_timeouts_;
+    SwipingHand hand_{23};
+    int given_ = 0;
+    std::optional<std::chrono::steady_clock::time_point> until_;
+};
+
+/// Plays a hand that stalls, at its own pace.
+void play_stalling(bool in_steps, bool keeps_timeouts, int before, Duration stall,
+                   const Session::EventCallback& callback) {
+    SessionOptions options;
+    options.pace = Pace::own_pace;
+    auto session = Session::create(
+        std::unique_ptr<HandSource>(new StallingHand(before, stall, keeps_timeouts)), options);
+    ASSERT_TRUE(session);
+    session->subscribe(callback);
+    if (!in_steps) {
+        EXPECT_TRUE(session->run());
+        return;
+    }
+    while (true) {
+        const auto status = session->step(1s);
+        ASSERT_TRUE(status);
+        if (*status == StepStatus::end) {
+            return;
+        }
+    }
+}
+
+/// Calls `play` for all four ways at once, since each takes its time.
+void in_all_ways(const std::function<void(bool in_steps, bool keeps_timeouts)>& play) {
+    std::vector<std::jthread> ways;
+    for (const bool in_steps : {false, true}) {
+        for (const bool keeps_timeouts : {false, true}) {
+            ways.emplace_back([=] { play(in_steps, keeps_timeouts); });
+        }
+    }
+}
+
+TEST(Session, ASourceThatIsSlowLosesNoHand) {
+    in_all_ways([](bool in_steps, bool keeps_timeouts) {
+        std::vector<EventPhase> phases;
+        // Longer than a hand may be unseen, after it was told of.
+        play_stalling(in_steps, keeps_timeouts, 20, 400ms,
+                      [&](const GestureEvent& e) { phases.push_back(e.phase); });
+        EXPECT_EQ(phases, (std::vector<EventPhase>{EventPhase::begin, EventPhase::end}))
+            << in_steps << keeps_timeouts;
+    });
 }
 
 TEST(Session, ImagesThatComeLateLoseNoHand) {
@@ -378,58 +457,65 @@ TEST(Session, ImagesThatComeLateLoseNoHand) {
     EXPECT_EQ(phases, (std::vector<EventPhase>{EventPhase::begin, EventPhase::end}));
 }
 
-constexpr int kStallBefore = 3;  // the hand is told of some frames later
-constexpr auto kStall = 300ms;
-
-/// From the newest frame to the event that tells of a hand; `stall` holds up the frame before it.
-Duration latency_of_a_hand(bool in_steps, const std::function<void()>& source_stalls,
-                           const std::function<void()>& program_stalls) {
-    SwipingHand hand(15);
-    std::string message;
-    int asked = 0;
-    auto session = callers_session(
-        [&](HandFrame& out) {
-            if (asked++ == kStallBefore) {
-                source_stalls();
+TEST(Session, ASlowSourceIsNoLatency) {
+    constexpr auto kStall = 300ms;
+    constexpr int kBefore = 3;  // the hand is told of some frames later
+    in_all_ways([&](bool in_steps, bool keeps_timeouts) {
+        Duration latency{};
+        play_stalling(in_steps, keeps_timeouts, kBefore, kStall, [&](const GestureEvent& e) {
+            if (e.phase == EventPhase::begin) {
+                latency = e.emit - e.sensor;
             }
-            return hand.next(Duration::zero(), out, message);
-        },
-        Pace::own_pace);
+        });
+        EXPECT_GT(latency, Duration::zero());
+        EXPECT_LT(latency, kStall / 2) << in_steps << keeps_timeouts;
+    });
+}
+
+TEST(Session, ASlowProgramIsLatency) {
+    constexpr auto kStall = 300ms;
+    auto session = swiping_session(Pace::own_pace, 15);
+    ASSERT_TRUE(session);
     Duration latency{};
     session->subscribe([&](const GestureEvent& e) {
         if (e.phase == EventPhase::begin) {
             latency = e.emit - e.sensor;
         }
     });
-    int seen = 0;
-    session->subscribe_hands([&](const HandFrame&) {
-        if (++seen == kStallBefore) {
-            program_stalls();
-        }
-    });
-    if (!in_steps) {
-        EXPECT_TRUE(session->run());
-        return latency;
-    }
-    while (true) {
-        const auto status = session->step(1s);
-        if (!status || *status == StepStatus::end) {
-            return latency;
+    for (int i = 0; i < 15; ++i) {
+        ASSERT_TRUE(session->step(1s));
+        if (i == 3) {
+            std::this_thread::sleep_for(kStall);
         }
     }
+    EXPECT_GT(latency, kStall / 2);
 }
 
-TEST(Session, ASlowSourceIsNoLatency) {
-    const auto stall = [] { std::this_thread::sleep_for(kStall); };
-    for (const bool in_steps : {false, true}) {
-        const Duration latency = latency_of_a_hand(in_steps, stall, [] {});
-        EXPECT_GT(latency, Duration::zero());
-        EXPECT_LT(latency, kStall / 2) << in_steps;
+TEST(Session, AStepFetchesWhatIsReadySoon) {
+    constexpr int kItems = 10;
+    SessionOptions options;
+    options.pace = Pace::own_pace;
+    int items = 0;
+    /// Ready 2 ms after it is asked for.
+    class Soon final : public HandSource {
+     public:
+        SourceStatus next(Duration timeout, HandFrame& out, std::string&) override {
+            std::this_thread::sleep_for(std::min<Duration>(timeout, 2ms));
+            out = HandFrame{};
+            out.coordinates = CoordinateFrame::interaction;
+            return timeout < 2ms ? SourceStatus::timeout : SourceStatus::ok;
+        }
+    };
+    auto session = Session::create(std::unique_ptr<HandSource>(new Soon), options);
+    ASSERT_TRUE(session);
+    const auto begin = std::chrono::steady_clock::now();
+    while (items < kItems && std::chrono::steady_clock::now() - begin < 2s) {
+        const auto status = session->step(1s);
+        ASSERT_TRUE(status);
+        items += *status == StepStatus::processed ? 1 : 0;
     }
-    // What the program itself takes is.
-    EXPECT_GT(latency_of_a_hand(
-                  true, [] {}, stall),
-              kStall / 2);
+    EXPECT_EQ(items, kItems);
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, kItems * 15ms);
 }
 
 TEST(Session, AWaitInACallbackIsRefused) {

@@ -41,16 +41,16 @@ TEST(StreamClock, StandsStillForASourceThatIsSlow) {
     clock.begin({});
     const Stamp stamp = Stamp{} + milliseconds(20);
     const auto due = clock.due(stamp);
-    clock.note_read(stamp, due - milliseconds(15), due - milliseconds(5));  // in time
+    clock.note_read(stamp, milliseconds(10), due - milliseconds(5));  // in time
     EXPECT_EQ(clock.due(stamp), due);
-    clock.note_read(stamp, due - milliseconds(15), due + milliseconds(7));  // made for too long
+    clock.note_read(stamp, milliseconds(22), due + milliseconds(7));  // made for too long
     EXPECT_EQ(clock.due(stamp), due + milliseconds(7));
     // Asked for too late; that it took 2 ms to make is all the source can be blamed for.
-    clock.note_read(stamp, due + milliseconds(100), due + milliseconds(102));
+    clock.note_read(stamp, milliseconds(2), due + milliseconds(102));
     EXPECT_EQ(clock.due(stamp), due + milliseconds(9));
     StreamClock live(Pace::live);
     live.begin({});
-    live.note_read({}, due, due + milliseconds(7));
+    live.note_read({}, milliseconds(7), due + milliseconds(7));
     EXPECT_EQ(live.due({}), StreamClock::Wall::time_point::min());
 }
 
