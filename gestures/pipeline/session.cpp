@@ -37,6 +37,14 @@ TimeStatistics statistics_of(const TimeHistogram& h) {
     return {h.count(), h.quantile_us(0.5), h.quantile_us(0.99), h.max_us()};
 }
 
+Error no_thread(const std::system_error& e) {
+    return {ErrorCode::io, std::string("the system gives no thread: ") + e.what()};
+}
+
+Error callback_threw(const std::exception& e) {
+    return {ErrorCode::invalid_argument, std::string("a callback threw: ") + e.what()};
+}
+
 }  // namespace
 
 struct Session::Impl {
@@ -63,6 +71,13 @@ struct Session::Impl {
     void read_live();
     void tick();
     void deliver(std::span<const GestureEvent> events);
+    /// Notes that what is thrown meanwhile is the caller's.
+    template <typename Callbacks, typename Arg>
+    void call_back(const Callbacks& callbacks, const Arg& arg) {
+        in_callback = true;
+        callbacks.call(arg);
+        in_callback = false;
+    }
     Result<StepStatus> finish(StepStatus how);
     template <typename Call>
     auto guarded(Call&& call) noexcept -> decltype(call());
@@ -73,7 +88,8 @@ struct Session::Impl {
     StreamClock clock;
     InputItem item;
     bool item_waits = false;  ///< read, but not due yet
-    bool finished = false;    ///< open gestures have ended or were cancelled
+    bool in_callback = false;
+    bool finished = false;  ///< open gestures have ended or were cancelled
     std::optional<Error> failure;
     Wall::duration reading{};  ///< spent on asking the source since it last gave an item
     Stamp newest;
@@ -154,7 +170,7 @@ void Session::Impl::deliver(std::span<const GestureEvent> events) {
             }
         }
         event_queue.push(event);
-        event_callbacks.call(event);
+        call_back(event_callbacks, event);
     }
 }
 
@@ -198,9 +214,9 @@ Result<StepStatus> Session::Impl::take() {
     newest_taken = begin;
     deliver(outcome->events);
     if (outcome->view.interaction_hands != nullptr) {
-        hands_callbacks.call(*outcome->view.interaction_hands);
+        call_back(hands_callbacks, *outcome->view.interaction_hands);
     }
-    pipeline_callbacks.call(outcome->view);
+    call_back(pipeline_callbacks, outcome->view);
     const MutexLock lock(statistics_mutex);
     whole_time.add(Wall::now() - begin);
     ++counters.items;
@@ -259,7 +275,12 @@ Result<void> Session::Impl::run_live() {
         queue.push(item);
         item_waits = false;
     }
-    std::thread reader([this] { read_live(); });
+    std::thread reader;
+    try {
+        reader = std::thread([this] { read_live(); });
+    } catch (const std::system_error& e) {
+        return no_thread(e);
+    }
     Result<void> result;
     try {
         while (true) {
@@ -323,10 +344,10 @@ auto Session::Impl::guarded(Call&& call) noexcept -> decltype(call()) {
             failure = result.error();
         }
         return result;
-    } catch (const std::bad_alloc&) {
-        failure = base::out_of_memory("Session");
+    } catch (const std::bad_alloc& e) {
+        failure = in_callback ? callback_threw(e) : base::out_of_memory("Session");
     } catch (const std::exception& e) {
-        failure = Error{ErrorCode::invalid_argument, std::string("a callback threw: ") + e.what()};
+        failure = callback_threw(e);
     } catch (...) {
         failure = Error{ErrorCode::invalid_argument, "a callback threw something unknown"};
     }
@@ -469,7 +490,7 @@ Result<void> Session::start() {
         });
     } catch (const std::system_error& e) {
         impl->running = false;
-        return Error{ErrorCode::io, std::string("the system gives no thread: ") + e.what()};
+        return no_thread(e);
     }
     return {};
 }

@@ -6,7 +6,7 @@
 #include <cstddef>
 
 // Every way to the heap ends in one of these; glibc keeps its own under other names.
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if defined(__GLIBC__) && !defined(XTRACK_SANITIZED)
 #define XTRACK_COUNTS_ALLOCATIONS 1
 namespace {
 std::atomic<long> counted{0};

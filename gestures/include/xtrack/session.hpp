@@ -151,7 +151,9 @@ class Session {
     /// @thread one at a time
     Result<void> wait();
     /// Processes at most one item in the calling thread; waits for it up to `timeout` (0: not at
-    /// all). Call it at 50 Hz or more: losses are noticed by the clock. @thread one at a time
+    /// all). Nothing is dropped: a loop that turns more slowly than items come must call it until
+    /// it says `waiting` (a replay never does), or falls ever further behind. Let every turn do so,
+    /// 50 a second or more, since a device's lost hands are noticed here. @thread one at a time
     Result<StepStatus> step(Duration timeout = Duration::zero());
     /// Ends run(), step() or the thread of start() within 20 ms of a source that keeps its
     /// time-outs; what was open is cancelled. Cannot fail; again is harmless. @thread any, a

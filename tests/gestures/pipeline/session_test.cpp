@@ -220,6 +220,29 @@ TEST(Session, AStepThatIsNotDueWaitsNoLongerThanAsked) {
     EXPECT_EQ(*status, StepStatus::waiting);
 }
 
+TEST(Session, ALoopThatStepsUntilItWaitsKeepsUp) {
+    constexpr auto kTurn = 50ms;  // three items
+    constexpr int kFrames = 30;
+    auto session = swiping_session(Pace::own_pace, kFrames);
+    ASSERT_TRUE(session);
+    std::optional<std::chrono::steady_clock::time_point> begin;
+    Duration behind{};
+    session->subscribe_hands([&](const HandFrame& hands) {
+        const auto now = std::chrono::steady_clock::now();
+        begin = begin.value_or(now);
+        behind = now - *begin - (hands.stamp - Stamp{});
+    });
+    while (session->statistics().items < kFrames) {
+        auto status = session->step();
+        while (status && *status == StepStatus::processed) {
+            status = session->step();
+        }
+        ASSERT_TRUE(status);
+        std::this_thread::sleep_for(kTurn);
+    }
+    EXPECT_LT(behind, 4 * kTurn);
+}
+
 TEST(Session, AStepWaitsForWhatIsDueSoon) {
     auto session = swiping_session(Pace::own_pace, 3);
     ASSERT_TRUE(session);
@@ -239,6 +262,15 @@ TEST(Session, ACallbackThatThrowsEndsItWithAnError) {
         ASSERT_FALSE(result);
         EXPECT_NE(result.error().message.find("no more"), std::string::npos);
     }
+}
+
+TEST(Session, ACallbackThatFindsNoMemoryIsTheOneToBlame) {
+    auto session = swiping_session();
+    ASSERT_TRUE(session);
+    session->subscribe_hands([](const HandFrame&) { throw std::bad_alloc(); });
+    const auto result = session->run();
+    ASSERT_FALSE(result);
+    EXPECT_TRUE(result.error().message.starts_with("a callback threw: ")) << result.error().message;
 }
 
 TEST(Session, ASourceThatFailsEndsItWithTheSourcesWords) {
@@ -363,6 +395,8 @@ TEST(Session, ASourceThatHasNothingIsAskedAgainAndNotAllTheTime) {
 /// that keeps its time-outs says it.
 class StallingHand final : public HandSource {
  public:
+    static constexpr int kFrames = 23;
+
     StallingHand(int before, Duration stall, bool keeps_timeouts)
         : before_(before), stall_(stall), keeps_timeouts_(keeps_timeouts) {}
 
@@ -386,7 +420,7 @@ class StallingHand final : public HandSource {
     int before_;
     Duration stall_;
     bool keeps_timeouts_;
-    SwipingHand hand_{23};
+    SwipingHand hand_{kFrames};
     int given_ = 0;
     std::optional<std::chrono::steady_clock::time_point> until_;
 };
@@ -426,11 +460,15 @@ void in_all_ways(const std::function<void(bool in_steps, bool keeps_timeouts)>& 
 TEST(Session, ASourceThatIsSlowLosesNoHand) {
     in_all_ways([](bool in_steps, bool keeps_timeouts) {
         std::vector<EventPhase> phases;
+        Stamp newest;
         // Longer than a hand may be unseen, after it was told of.
-        play_stalling(in_steps, keeps_timeouts, 20, 400ms,
-                      [&](const GestureEvent& e) { phases.push_back(e.phase); });
+        play_stalling(in_steps, keeps_timeouts, 20, 400ms, [&](const GestureEvent& e) {
+            phases.push_back(e.phase);
+            newest = e.sensor;
+        });
         EXPECT_EQ(phases, (std::vector<EventPhase>{EventPhase::begin, EventPhase::end}))
             << in_steps << keeps_timeouts;
+        EXPECT_EQ(newest, Stamp{} + kFrame * (StallingHand::kFrames - 1));  // the stream's end
     });
 }
 
@@ -653,23 +691,43 @@ TEST(Session, NothingThatIsThrownLeavesCreate) {
               std::string::npos);
 }
 
-#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-/// In a process of its own, whose heap holds nothing that was given back. Says how it went.
-[[noreturn]] void open_without_memory() {
+#if defined(__linux__) && !defined(XTRACK_SANITIZED)
+/// From now on the process gets a megabyte more and that is all. For a process of its own, whose
+/// heap holds nothing that was given back.
+void take_memory_away() {
     rlim_t pages = 0;
     std::ifstream("/proc/self/statm") >> pages;
     rlimit tight{};
     getrlimit(RLIMIT_AS, &tight);
     tight.rlim_cur = pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + (rlim_t{1} << 20U);
     setrlimit(RLIMIT_AS, &tight);
-    const auto session = Session::open("sim");
-    std::fputs(session ? "there was enough" : session.error().message.c_str(), stderr);
-    std::exit(session ? 1 : 0);
+}
+
+/// Says how it went.
+template <typename T>
+[[noreturn]] void leave_with(const Result<T>& result) {
+    std::fputs(result ? "there was enough" : result.error().message.c_str(), stderr);
+    std::exit(result ? 1 : 0);
 }
 
 TEST(SessionDeathTest, OpenSaysThatThereIsNoMemory) {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
-    EXPECT_EXIT(open_without_memory(), testing::ExitedWithCode(0), "^[A-Za-z:]+: not enough");
+    const auto open = [] {
+        take_memory_away();
+        leave_with(Session::open("sim"));
+    };
+    EXPECT_EXIT(open(), testing::ExitedWithCode(0), "^[A-Za-z:]+: not enough");
+}
+
+TEST(SessionDeathTest, RunAndStartSayThatThereIsNoThread) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    const auto play = [](auto how) {
+        auto session = swiping_session(Pace::live, 3);
+        take_memory_away();  // a thread's stack has more
+        leave_with(((*session).*how)());
+    };
+    EXPECT_EXIT(play(&Session::run), testing::ExitedWithCode(0), "^the system gives no thread");
+    EXPECT_EXIT(play(&Session::start), testing::ExitedWithCode(0), "^the system gives no thread");
 }
 #endif
 
