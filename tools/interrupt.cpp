@@ -21,13 +21,18 @@ void note(int number) {
 
 NoteInterrupt::NoteInterrupt() {
     noted = false;
-    std::signal(SIGINT, note);
-    std::signal(SIGTERM, note);
+    for (Before& signal : before_) {
+        signal.handler = std::signal(signal.number, note);
+        if (signal.handler == SIG_IGN) {  // whoever started us (nohup) wants it so
+            std::signal(signal.number, SIG_IGN);
+        }
+    }
 }
 
 NoteInterrupt::~NoteInterrupt() {
-    std::signal(SIGINT, SIG_DFL);
-    std::signal(SIGTERM, SIG_DFL);
+    for (const Before& signal : before_) {
+        std::signal(signal.number, signal.handler);
+    }
 }
 
 bool interrupted() noexcept { return noted; }

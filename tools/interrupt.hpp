@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <csignal>
+
 namespace xtrack::tools {
 
 constexpr int kInterruptedStatus = 130;  // what shells say of Ctrl-C
 
 /// While it lives, Ctrl-C and SIGTERM leave a note instead of ending the program; a second one ends
-/// it at once, whatever it hangs in.
+/// it at once, whatever it hangs in. One that is ignored stays so; after it all is as it was.
 /// @thread one at a time
 class NoteInterrupt {
  public:
@@ -14,6 +16,13 @@ class NoteInterrupt {
     ~NoteInterrupt();
     NoteInterrupt(const NoteInterrupt&) = delete;
     NoteInterrupt& operator=(const NoteInterrupt&) = delete;
+
+ private:
+    struct Before {
+        int number;
+        void (*handler)(int) = SIG_DFL;
+    };
+    Before before_[2] = {{SIGINT}, {SIGTERM}};
 };
 
 /// Whether there is a note since the last NoteInterrupt was made. @thread any

@@ -31,7 +31,7 @@ void add_replay(CLI::App& app, int& exit_status) {
         }
         const auto recording = RecordingReader::open(*folder);
         const std::size_t items = recording ? recording->entries().size() : 0;
-        exit_status = play(*session, *stream, options.pace, items);
+        exit_status = play(*session, *stream, options.pace, true, items);
     });
 }
 

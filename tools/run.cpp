@@ -20,12 +20,16 @@ struct RunOptions {
     StreamOptions stream;
 };
 
+bool is_simulator(const std::string& source) {
+    return source == "sim" || source.starts_with("sim:");
+}
+
 /// `sim` with a seed is another person on another day; without one it is the same as everywhere.
 Result<Session> open(const RunOptions& run, const SessionOptions& options) {
     if (run.seed == 0) {
         return Session::open(run.source, options);
     }
-    if (run.source != "sim" && !run.source.starts_with("sim:")) {
+    if (!is_simulator(run.source)) {
         return Error{ErrorCode::invalid_argument,
                      "--seed: only the simulator has one; leave it out for " + run.source};
     }
@@ -63,7 +67,9 @@ void add_run(CLI::App& app, int& exit_status) {
             return;
         }
         auto session = open(*run, options);
-        exit_status = session ? play(*session, run->stream, options.pace) : fail(session.error());
+        exit_status = session
+                          ? play(*session, run->stream, options.pace, !is_simulator(run->source))
+                          : fail(session.error());
     });
 }
 

@@ -111,7 +111,7 @@ Result<void> choose_gestures(const std::string& list, GestureSettings& settings)
     return {};
 }
 
-int play(Session& session, const StreamOptions& options, Pace pace, std::size_t items) {
+int play(Session& session, const StreamOptions& options, Pace pace, bool whole, std::size_t items) {
     const EventFormat format =
         options.json && options.events == EventFormat::text ? EventFormat::jsonl : options.events;
     session.subscribe(
@@ -146,8 +146,7 @@ int play(Session& session, const StreamOptions& options, Pace pace, std::size_t 
     if (!result) {
         return fail(result.error());
     }
-    // A live stream has no end but this; a replay that stops half-way must not pass for whole.
-    if (pace == Pace::replay && interrupted()) {
+    if (whole && interrupted()) {
         print_error("xtrack: interrupted; the events above are not all of the recording's\n");
         return kInterruptedStatus;
     }

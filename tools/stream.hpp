@@ -26,9 +26,11 @@ void add_stream_options(CLI::App& command, StreamOptions& options);
 /// @errors invalid_argument: names the one that is not known, and those that are
 [[nodiscard]] Result<void> choose_gestures(const std::string& list, GestureSettings& settings);
 
-/// Runs a session to its end and prints. @param items how many the source holds, for a progress
-/// bar; 0 = not known @return the exit status
-int play(Session& session, const StreamOptions& options, Pace pace, std::size_t items = 0);
+/// Runs a session to its end and prints. @param whole what is interrupted is not the whole answer:
+/// a recording's @param items how many the source holds, for a progress bar; 0 = not known
+/// @return the exit status
+int play(Session& session, const StreamOptions& options, Pace pace, bool whole,
+         std::size_t items = 0);
 
 /// Print `xtrack: message` on stderr. @return the exit status of a failure, 1, or of wrong usage, 2
 int fail(const Error& error);

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/tools/command.hpp"
+#include "tools/interrupt.hpp"
 
 namespace xtrack::test {
 namespace {
@@ -52,15 +53,41 @@ TEST(Replay, ToAFullDiskFails) {
     EXPECT_TRUE(is_one_line_message(outcome.err)) << outcome.err;
 }
 
+bool has_a_line(const std::string& out) { return out.find('\n') != std::string::npos; }
+
 // What was begun is ended, what is known is printed, and the status is that of a run that ended.
 TEST(Run, EndsInOrderOnInterrupt) {
-    const Outcome outcome = interrupted_command(
-        {"run", "sim", "--json", "--stats"}, SIGINT,
-        [](const std::string& out) { return out.find('\n') != std::string::npos; });
+    const Outcome outcome =
+        interrupted_command({"run", "sim", "--json", "--stats"}, SIGINT, has_a_line);
     EXPECT_EQ(outcome.status, 0);
     EXPECT_THAT(outcome.out, HasSubstr("\"begin\""));
     EXPECT_EQ(outcome.out.back(), '\n');
     EXPECT_THAT(outcome.err, HasSubstr("frames"));
+}
+
+TEST(Run, OfARecordingIsNotWholeOnInterrupt) {
+    const Outcome outcome = interrupted_command({"run", kSwipe}, SIGTERM, has_a_line);
+    EXPECT_EQ(outcome.status, 130);
+    EXPECT_THAT(outcome.err, HasSubstr("not all of the recording's"));
+}
+
+TEST(Run, LeavesASignalIgnoredThatWas) {
+    const auto before = std::signal(SIGINT, SIG_IGN);  // as nohup does with SIGHUP
+    const Outcome outcome = interrupted_command({"run", kSwipe}, SIGINT, has_a_line);
+    std::signal(SIGINT, before);
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_THAT(outcome.out, HasSubstr("swipe_left"));
+}
+
+TEST(NoteInterrupt, LeavesAllAsItWas) {
+    const auto mine = [](int) {};
+    const auto before = std::signal(SIGTERM, mine);
+    {
+        const tools::NoteInterrupt note;
+        std::raise(SIGTERM);
+        EXPECT_TRUE(tools::interrupted());
+    }
+    EXPECT_EQ(std::signal(SIGTERM, before), static_cast<void (*)(int)>(mine));
 }
 
 TEST(Eval, SaysInJsonThatThereWereNoGestures) {
