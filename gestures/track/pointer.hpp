@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include <xtrack/hand.hpp>
 #include <xtrack/one_euro_filter.hpp>
@@ -21,7 +22,7 @@ class Pointer {
         Stamp seen;
         OneEuroFilter3 filter{OneEuroSettings{}};
     };
-    Slot& slot_of(int hand_id) noexcept;
+    Slot& slot_of(int hand_id, std::span<const Hand> in_frame) noexcept;
 
     std::array<Slot, kMaxHands> slots_;
 };

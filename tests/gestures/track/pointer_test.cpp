@@ -75,5 +75,30 @@ TEST(Pointer, TwoHandsDoNotMix) {
     }
 }
 
+TEST(Pointer, ANewHandTakesNoneFromOneThatStays) {
+    Pointer pointer;
+    HandFrame both;
+    const auto show = [&](int first, int second, int frame) {
+        both = hand_at(first, -100.0F, frame);
+        both.count = 2;
+        both.hands[1].id = second;
+        // Where hand 1 stays a filter lags behind its palm, and a new one would not.
+        both.hands[1].palm_mm = {5.0F * static_cast<float>(frame), 0.0F, 500.0F};
+        pointer.update(both);
+        return both.hands[1].palm_mm.x() - both.hands[1].pointer_mm.x();
+    };
+    float lag = 0.0F;
+    for (int i = 0; i < 30; ++i) {
+        HandFrame hands = hand_at(1, 5.0F * static_cast<float>(i), i);
+        hands.count = 2;
+        hands.hands[1].id = 2;
+        hands.hands[1].palm_mm = {-100.0F, 0.0F, 500.0F};
+        pointer.update(hands);
+        lag = hands.hands[0].palm_mm.x() - hands.hands[0].pointer_mm.x();
+    }
+    ASSERT_GT(lag, 1.0F);
+    EXPECT_NEAR(show(3, 1, 30), lag, 0.5F);  // as 2 leaves 3 comes, and is told of first
+}
+
 }  // namespace
 }  // namespace xtrack
