@@ -7,6 +7,7 @@
 
 #include "core/base/csv.hpp"
 #include "core/base/file.hpp"
+#include "core/base/text.hpp"
 
 namespace xtrack {
 
@@ -15,7 +16,6 @@ namespace {
 constexpr std::size_t kMaxFileBytes = std::size_t{64} << 20U;
 constexpr base::CsvLimits kLimits{4096, 1'000'000, 128};
 constexpr std::size_t kMaxNameLength = 64;
-constexpr std::int64_t kMaxTime_us = std::int64_t{100} * 366 * 24 * 3600 * 1'000'000;
 constexpr double kMaxPosition_mm = 1e5;
 constexpr std::int64_t kMaxFrames = 1'000'000;
 constexpr const char* kFingers[kFingerCount] = {"thumb", "index", "middle", "ring", "little"};
@@ -61,14 +61,6 @@ Result<Chirality> read_hand(const base::CsvReader& csv, std::size_t column) {
         return Chirality::unknown;
     }
     return csv.error_at(column, "give left, right or unknown");
-}
-
-Result<Stamp> read_stamp(const base::CsvReader& csv, std::size_t column) {
-    const auto t_us = csv.int_field(column, -kMaxTime_us, kMaxTime_us);
-    if (!t_us) {
-        return t_us.error();
-    }
-    return Stamp::from_us(*t_us);
 }
 
 // Opens the text, finds `names` in its header, and calls `read` for every row.
@@ -142,11 +134,11 @@ Result<GestureLabel> read_label(const base::CsvReader& csv,
     if (!hand) {
         return hand.error();
     }
-    const auto start = read_stamp(csv, columns[2]);
+    const auto start = csv.stamp_field(columns[2], std::nullopt);
     if (!start) {
         return start.error();
     }
-    const auto end = read_stamp(csv, columns[3]);
+    const auto end = csv.stamp_field(columns[3], std::nullopt);
     if (!end) {
         return end.error();
     }
@@ -158,7 +150,7 @@ Result<GestureLabel> read_label(const base::CsvReader& csv,
     label.end = *end;
     const auto commit_column = csv.column("commit_us");
     if (commit_column && !csv.field(*commit_column).empty()) {
-        const auto commit = read_stamp(csv, *commit_column);
+        const auto commit = csv.stamp_field(*commit_column, std::nullopt);
         if (!commit) {
             return commit.error();
         }
@@ -194,9 +186,10 @@ Result<PoseLabel> read_pose(const base::CsvReader& csv, const std::array<std::si
 }
 
 Result<HandTruth> read_truth_row(const base::CsvReader& csv,
-                                 const std::array<std::size_t, 5>& columns) {
+                                 const std::array<std::size_t, 5>& columns,
+                                 std::optional<Stamp> before) {
     HandTruth truth;
-    const auto stamp = read_stamp(csv, columns[0]);
+    const auto stamp = csv.stamp_field(columns[0], before);
     if (!stamp) {
         return stamp.error();
     }
@@ -274,11 +267,8 @@ Result<std::vector<HandTruth>> parse_hand_truth(std::string_view text, const std
         text, name, {"t_us", "hand", "palm_x", "palm_y", "palm_z"},
         [&before](const base::CsvReader& csv,
                   const std::array<std::size_t, 5>& columns) -> Result<HandTruth> {
-            auto truth = read_truth_row(csv, columns);
+            auto truth = read_truth_row(csv, columns, before);
             if (truth) {
-                if (before && truth->stamp < *before) {
-                    return csv.error_at(columns[0], "time goes backwards, sort the rows by t_us");
-                }
                 before = truth->stamp;
             }
             return truth;
@@ -334,6 +324,13 @@ std::string hand_truth_text(std::span<const HandTruth> truth) {
 }
 
 Result<void> write_labels(const std::filesystem::path& file, std::span<const GestureLabel> labels) {
+    for (const GestureLabel& label : labels) {
+        if (!is_gesture(label.gesture)) {
+            return Error{ErrorCode::invalid_argument, file.string() + ": the gesture is " +
+                                                          base::quoted(label.gesture) + "; " +
+                                                          gesture_wanted()};
+        }
+    }
     return base::write_file(file, labels_text(labels));
 }
 

@@ -81,6 +81,7 @@ struct HandTruth {
 [[nodiscard]] std::string hand_truth_text(std::span<const HandTruth> truth);
 
 /// Writes labels.csv, whole or not at all; an existing file is replaced.
+/// @return an Error: a gesture that parse_labels() would refuse, or the file cannot be written
 /// @since 0.1
 [[nodiscard]] Result<void> write_labels(const std::filesystem::path& file,
                                         std::span<const GestureLabel> labels);

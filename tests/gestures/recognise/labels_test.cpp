@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <xtrack/gesture_event.hpp>
+
 namespace xtrack {
 namespace {
 
@@ -70,6 +72,31 @@ TEST(Labels, WhatIsWrittenReadsBack) {
     std::filesystem::remove(file);
     ASSERT_TRUE(back.ok()) << back.error().message;
     EXPECT_EQ(*back, labels);
+}
+
+TEST(Labels, WhatDoesNotReadBackIsNotWritten) {
+    const auto file = std::filesystem::path(testing::TempDir()) / "xtrack_labels_wrong.csv";
+    const std::vector<GestureLabel> labels = {{"swype_left", Chirality::right, {}, {}, {}}};
+    const auto written = write_labels(file, labels);
+    ASSERT_FALSE(written.ok());
+    EXPECT_THAT(written.error().message, AllOf(HasSubstr("'swype_left'"), HasSubstr("x_")));
+    EXPECT_FALSE(std::filesystem::exists(file));
+}
+
+// A gesture that is recognised and is no label could be asked for by nobody.
+TEST(Labels, AreTheNamesOfAllEvents) {
+    const std::string none = "unknown";
+    for (int t = 1; to_string(static_cast<GestureType>(t)) != none; ++t) {
+        GestureEvent event;
+        event.type = static_cast<GestureType>(t);
+        EXPECT_EQ(message_of(name_of(event) + ",right,1,2,\n"), "");
+        for (int d = 1;
+             event.type == GestureType::swipe && to_string(static_cast<Direction>(d)) != none;
+             ++d) {
+            event.direction = static_cast<Direction>(d);
+            EXPECT_EQ(message_of(name_of(event) + ",right,1,2,\n"), "");
+        }
+    }
 }
 
 TEST(Poses, AreRead) {
