@@ -106,7 +106,8 @@ std::string name_of_folder(const std::string& folder) {
 Result<Recording> score(const std::string& folder, const Player& play, GestureScorer& scorer) {
     const std::filesystem::path label_file = std::filesystem::path(folder) / "labels.csv";
     std::vector<GestureLabel> labels;
-    if (std::filesystem::exists(label_file)) {
+    // A link to nothing is an error, and not a recording without labels.
+    if (std::filesystem::exists(std::filesystem::symlink_status(label_file))) {
         auto read = read_labels(label_file);
         if (!read) {
             return read.error();

@@ -7,8 +7,9 @@ namespace xtrack::tools {
 
 constexpr int kInterruptedStatus = 130;  // what shells say of Ctrl-C
 
-/// While it lives, Ctrl-C and SIGTERM leave a note instead of ending the program; a second one ends
-/// it at once, whatever it hangs in. One that is ignored stays so; after it all is as it was.
+/// While it lives, Ctrl-C, SIGTERM and SIGHUP leave a note instead of ending the program; a second
+/// one ends it at once, whatever it hangs in. One that is ignored stays so; after it all is as it
+/// was.
 /// @thread one at a time
 class NoteInterrupt {
  public:
@@ -22,7 +23,7 @@ class NoteInterrupt {
         int number;
         void (*handler)(int) = SIG_DFL;
     };
-    Before before_[2] = {{SIGINT}, {SIGTERM}};
+    Before before_[3] = {{SIGINT}, {SIGTERM}, {SIGHUP}};
 };
 
 /// Whether there is a note since the last NoteInterrupt was made. @thread any

@@ -43,13 +43,14 @@ EventFormat format_of(const std::string& name) {
 /// Where stderr is closed or full nothing can be said any more, and the exit status must do.
 void print_error(const std::string& text) { (void)std::fputs(text.c_str(), stderr); }
 
-/// Ctrl-C and SIGTERM end the session in order: what is open is cancelled, statistics are printed.
+/// Ctrl-C, SIGTERM and a closed terminal end the session in order: what is open is cancelled,
+/// statistics are printed. So does an answer that cannot be written: nobody would see the rest.
 class StopOnInterrupt {
  public:
     explicit StopOnInterrupt(Session& session)
         : watcher_([&session](const std::stop_token& over) {
               while (!over.stop_requested()) {
-                  if (interrupted()) {
+                  if (interrupted() || std::ferror(stdout) != 0) {
                       session.stop();
                   }
                   std::this_thread::sleep_for(kPoll);

@@ -33,9 +33,10 @@ namespace {
 constexpr std::size_t kMaxListBytes = std::size_t{256} << 20U;
 constexpr std::size_t kMaxImageBytes = std::size_t{256} << 20U;
 
+/// A link to nothing is there: it fails when it is opened, and is not passed over.
 bool is_there(const fs::path& path) {
     std::error_code ignored;
-    return fs::exists(path, ignored);
+    return fs::symlink_status(path, ignored).type() != fs::file_type::not_found;
 }
 
 std::optional<fs::path> if_there(const fs::path& path) {

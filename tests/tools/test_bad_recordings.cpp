@@ -334,5 +334,21 @@ TEST_F(Recording, IsNotDecodedOverSomethingElse) {
     EXPECT_FALSE(fs::exists(out_ / "depth.png"));
 }
 
+// A file that is not there may be left out; a link that leads nowhere is a mistake.
+TEST(BadRecording, ALinkToNothingIsNotPassedOver) {
+    const TemporaryFolder folder;
+    const fs::path recording = folder.path() / "rec";
+    write_fringes(recording);
+    for (const char* name : {"labels.csv", "rig.yaml"}) {
+        fs::remove(recording / name);
+        fs::create_symlink("/nowhere/at/all", recording / name);
+        const Outcome outcome = xtrack_command({"eval", recording.string()});
+        EXPECT_EQ(outcome.status, 1) << name;
+        EXPECT_TRUE(is_one_line_message(outcome.err)) << outcome.err;
+        EXPECT_THAT(outcome.err, HasSubstr(name));
+        fs::remove(recording / name);
+    }
+}
+
 }  // namespace
 }  // namespace xtrack::test

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 
@@ -53,6 +54,18 @@ TEST(Replay, ToAFullDiskFails) {
     EXPECT_TRUE(is_one_line_message(outcome.err)) << outcome.err;
 }
 
+// The simulator's script takes half a minute; the first event comes within two seconds.
+TEST(Run, StopsWhenNobodyCanReadIt) {
+    if (!std::filesystem::exists("/dev/full")) {
+        GTEST_SKIP() << "this system has no /dev/full";
+    }
+    const auto begin = std::chrono::steady_clock::now();
+    const Outcome outcome = xtrack_command({"run", "sim", "--events", "jsonl"}, "/dev/full");
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_TRUE(is_one_line_message(outcome.err)) << outcome.err;
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds{20});
+}
+
 bool has_a_line(const std::string& out) { return out.find('\n') != std::string::npos; }
 
 // What was begun is ended, what is known is printed, and the status is that of a run that ended.
@@ -104,7 +117,7 @@ Outcome interrupted_decode(const std::filesystem::path& folder, int signal) {
 }
 
 TEST(Decode, LeavesNothingOnInterrupt) {
-    for (const int signal : {SIGINT, SIGTERM}) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         const TemporaryFolder folder;
         const Outcome outcome = interrupted_decode(folder.path(), signal);
         EXPECT_EQ(outcome.status, 130);
