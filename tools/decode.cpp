@@ -149,12 +149,7 @@ class DecodeRun {
             return interrupted_error();
         }
         if (reports_.empty()) {
-            return Error{ErrorCode::malformed,
-                         (recording_.folder() / "frames.csv").string() +
-                             ": holds no complete set "
-                             "of its " +
-                             std::to_string(recording_.patterns().patterns.size()) +
-                             " patterns; record all of them"};
+            return no_complete_set(recording_);
         }
         return output_->commit();
     }

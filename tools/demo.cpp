@@ -258,8 +258,10 @@ void add_demo(CLI::App& app, int& exit_status) {
         }
         print_table(*all);
         if (demo->seeds == 0) {
-            fmt::print("\nPictures: {0}/{1}.png and {0}/{2}.png; events: {0}/events.jsonl\n",
-                       demo->out, kPresets[0], kPresets[1]);
+            fmt::print(
+                "\nPictures and events: {0}/{1}.png, {0}/events.jsonl; {0}/{2}.png, "
+                "{0}/{2}.jsonl\n",
+                demo->out, kPresets[0], kPresets[1]);
         }
     });
 }

@@ -32,6 +32,10 @@ void add_replay(CLI::App& app, int& exit_status) {
         const auto recording = RecordingReader::open(*folder);
         const std::size_t items = recording ? recording->entries().size() : 0;
         exit_status = play(*session, *stream, options.pace, true, items);
+        if (exit_status == 0 && recording && recording->kind() == RecordingKind::fringe &&
+            session->statistics().depth_frames == 0) {
+            exit_status = fail(no_complete_set(*recording));
+        }
     });
 }
 

@@ -164,4 +164,11 @@ int usage(const Error& error) {
     return 2;
 }
 
+Error no_complete_set(const RecordingReader& recording) {
+    return {ErrorCode::malformed,
+            fmt::format("{}: holds no complete set of its {} patterns; record all of them",
+                        (recording.folder() / "frames.csv").string(),
+                        recording.patterns().patterns.size())};
+}
+
 }  // namespace xtrack::tools

@@ -5,6 +5,7 @@
 #include <string>
 
 #include <CLI/App.hpp>
+#include <xtrack/recording.hpp>
 #include <xtrack/session.hpp>
 
 #include "tools/event_output.hpp"
@@ -35,5 +36,8 @@ int play(Session& session, const StreamOptions& options, Pace pace, bool whole,
 /// Print `xtrack: message` on stderr. @return the exit status of a failure, 1, or of wrong usage, 2
 int fail(const Error& error);
 int usage(const Error& error);
+
+/// Of a fringe recording that gave no depth at all.
+[[nodiscard]] Error no_complete_set(const RecordingReader& recording);
 
 }  // namespace xtrack::tools

@@ -21,6 +21,18 @@ constexpr std::string_view kSimulator = "sim";
 constexpr std::string_view kSimulatorPreset = "sim:";
 constexpr std::string_view kDefaultPreset = "ideal-60";
 
+/// What somebody may have meant who named no folder.
+Error no_source(const std::filesystem::path& given) {
+    std::error_code unknown;
+    const char* what = std::filesystem::is_character_file(given, unknown)
+                           ? ": is a device, and live cameras are not part of this version"
+                       : std::filesystem::exists(given, unknown) ? ": is no folder"
+                                                                 : ": is not there";
+    return {ErrorCode::io, given.string() + what +
+                               "; give the folder of a recording, or sim, sim:ideal-60 or "
+                               "sim:webcam-30 for the simulator"};
+}
+
 Result<Session> open_simulator(std::string_view preset, const SessionOptions& options) {
     auto settings = SimSettings::preset(preset);
     if (!settings) {
@@ -98,7 +110,12 @@ Result<Session> Session::open(std::string_view source, const SessionOptions& opt
         if (source.starts_with(kSimulatorPreset)) {
             return open_simulator(source.substr(kSimulatorPreset.size()), options);
         }
-        return open_recording(std::filesystem::path(source), options);
+        const std::filesystem::path folder(source);
+        std::error_code unknown;
+        if (!std::filesystem::is_directory(folder, unknown)) {
+            return Result<Session>(no_source(folder));
+        }
+        return open_recording(folder, options);
     });
 }
 

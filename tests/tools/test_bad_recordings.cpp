@@ -72,7 +72,7 @@ struct Damage {
 void PrintTo(const Damage& damage, std::ostream* out) { *out << damage.name; }
 
 const std::vector<Damage> kFringeDamages = {
-    {"missing", [](const fs::path& f) { fs::remove_all(f); }, "is no folder"},
+    {"missing", [](const fs::path& f) { fs::remove_all(f); }, "give the folder of a recording"},
     {"empty",
      [](const fs::path& f) {
          fs::remove_all(f);
@@ -101,6 +101,12 @@ const std::vector<Damage> kFringeDamages = {
     {"time_backwards",
      [](const fs::path& f) { replace_in(f / "frames.csv", ",20000,2,", ",9999,2,"); },
      "frames.csv"},
+    {"one_pattern_missing",
+     [](const fs::path& f) {
+         replace_in(f / "frames.csv", ",10000,1,1", ",10000,1,0");
+         replace_in(f / "frames.csv", ",40000,4,1", ",40000,4,0");
+     },
+     "no complete set of its 3 patterns"},
     {"no_frames",
      [](const fs::path& f) { set_text(f / "frames.csv", "file,t_us,sequence,pattern\n"); },
      "frames.csv"},

@@ -66,6 +66,13 @@ TEST(Run, StopsWhenNobodyCanReadIt) {
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds{20});
 }
 
+TEST(Run, SaysThatThereAreNoCamerasYet) {
+    const Outcome outcome = xtrack_command({"run", "/dev/null"});
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_THAT(outcome.err, HasSubstr("is a device, and live cameras are not part of"));
+    EXPECT_TRUE(is_one_line_message(outcome.err)) << outcome.err;
+}
+
 bool has_a_line(const std::string& out) { return out.find('\n') != std::string::npos; }
 
 // What was begun is ended, what is known is printed, and the status is that of a run that ended.
