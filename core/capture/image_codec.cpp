@@ -2,17 +2,22 @@
 #include "core/capture/image_codec.hpp"
 
 #include <exception>
+#include <new>
 #include <optional>
 #include <vector>
 
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "core/base/setting_up.hpp"
 #include "core/capture/image_check.hpp"
+#include "core/capture/jpeg.hpp"
 
 namespace xtrack::capture {
 
 namespace {
+
+constexpr char kJpegFirst = '\xFF';
 
 std::string text_of(Size s) { return std::to_string(s.width) + "x" + std::to_string(s.height); }
 
@@ -52,6 +57,12 @@ Result<void> decode(std::string_view bytes, const std::string& name, Size size, 
                                    static_cast<std::size_t>(out.stride()) * sizeof(T)));
             return {};
         }
+    } catch (const std::bad_alloc&) {
+        return base::out_of_memory(name.c_str());
+    } catch (const cv::Exception& e) {
+        if (e.code == cv::Error::StsNoMem) {
+            return base::out_of_memory(name.c_str());
+        }
     } catch (const std::exception&) {
         // The message below says all that matters to the user.
     }
@@ -85,6 +96,9 @@ Result<void> decode_image(std::string_view bytes, const std::string& name, Size 
     constexpr int kBits = 8;
     if (auto ok = check(bytes, name, size, kBits); !ok) {
         return ok;
+    }
+    if (bytes.front() == kJpegFirst) {
+        return decode_jpeg(bytes, name, size, format, out);
     }
     const bool grey = format == PixelFormat::grey8;
     out.resize(size.width * (grey ? 1 : 3), size.height);

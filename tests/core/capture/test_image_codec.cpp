@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/capture/image_codec.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -10,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 namespace xtrack::capture {
 namespace {
@@ -30,6 +32,48 @@ TEST(ImageCodec, DepthIsOneChannelOf16Bits) {
         const auto read = decode_depth(png(type), "a.png", {16, 12}, depth);
         ASSERT_FALSE(read.ok()) << said;
         EXPECT_THAT(read.error().message, testing::HasSubstr(said));
+    }
+}
+
+std::string jpeg() {
+    cv::Mat image(120, 160, CV_8UC3);
+    cv::randu(image, 0, 255);
+    cv::GaussianBlur(image, image, {9, 9}, 3.0);
+    std::vector<unsigned char> bytes;
+    cv::imencode(".jpg", image, bytes);
+    return {bytes.begin(), bytes.end()};
+}
+
+TEST(ImageCodec, JpegsAreThePixelsThatOpenCvSees) {
+    const std::string bytes = jpeg();
+    const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8UC1,
+                          const_cast<char*>(bytes.data()));  // NOLINT: OpenCV reads only
+    for (const PixelFormat format : {PixelFormat::grey8, PixelFormat::bgr8}) {
+        const bool grey = format == PixelFormat::grey8;
+        const cv::Mat want = cv::imdecode(encoded, grey ? cv::IMREAD_GRAYSCALE : cv::IMREAD_COLOR);
+        Image<std::uint8_t> read;
+        ASSERT_TRUE(decode_image(bytes, "a.jpg", {160, 120}, format, read).ok());
+        for (int y = 0; y < want.rows; ++y) {
+            ASSERT_TRUE(std::equal(read.row(y), read.row(y) + read.width(), want.ptr(y))) << y;
+        }
+    }
+}
+
+TEST(ImageCodec, RuinedJpegsAreRefusedInSilence) {
+    const std::string whole = jpeg();
+    const std::string end = "\xFF\xD9";
+    const std::size_t third = whole.size() / 3;
+    std::string zeros = whole;
+    zeros.replace(2 * third, third / 2, third / 2, '\0');
+    const std::string missing = whole.substr(0, 2 * third) + end;
+    const std::string too_much = whole.substr(0, whole.size() - 2) + std::string(2000, '\0') + end;
+    for (const std::string& bytes : {zeros, missing, too_much}) {
+        Image<std::uint8_t> read;
+        testing::internal::CaptureStderr();
+        const auto result = decode_image(bytes, "a.jpg", {160, 120}, PixelFormat::grey8, read);
+        EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+        ASSERT_FALSE(result.ok());
+        EXPECT_THAT(result.error().message, testing::HasSubstr("a.jpg: the JPEG is damaged"));
     }
 }
 
