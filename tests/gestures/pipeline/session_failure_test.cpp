@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 #ifdef __linux__
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
 #endif
@@ -132,12 +133,13 @@ TEST(Session, AWaitInACallbackIsRefused) {
 }
 
 TEST(Session, RefusesARigOfDepthThatIsNotValid) {
-    Rig rig;
-    rig.camera.matrix << 580.0, 0.0, 320.0, 0.0, 580.0, 240.0, 0.0, 0.0, 1.0;
-    rig.camera.size = {640, 480};
-    EXPECT_TRUE(Session::create(null_depth_source(rig), {}));
-    rig.interaction_from_camera = Mat4d::Zero();
-    const auto session = Session::create(null_depth_source(rig), {});
+    // On the heap: GCC 12 for arm64 believes that empty optionals of a local are copied.
+    const auto rig = std::make_unique<Rig>();
+    rig->camera.matrix << 580.0, 0.0, 320.0, 0.0, 580.0, 240.0, 0.0, 0.0, 1.0;
+    rig->camera.size = {640, 480};
+    EXPECT_TRUE(Session::create(null_depth_source(*rig), {}));
+    rig->interaction_from_camera = Mat4d::Zero();
+    const auto session = Session::create(null_depth_source(*rig), {});
     ASSERT_FALSE(session);
     EXPECT_NE(session.error().message.find("interaction_from_camera"), std::string::npos);
 }
@@ -181,6 +183,22 @@ void take_memory_away() {
     setrlimit(RLIMIT_AS, &tight);
 }
 
+/// Emulators of another processor do not keep the limit.
+bool can_take_memory_away() {
+    rlimit before{};
+    getrlimit(RLIMIT_AS, &before);
+    take_memory_away();
+    constexpr std::size_t kMuch = std::size_t{64} << 20U;
+    void* const much = mmap(nullptr, kMuch, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    setrlimit(RLIMIT_AS, &before);
+    return much == MAP_FAILED || munmap(much, kMuch) != 0;
+}
+
+#define SKIP_WHERE_MEMORY_HAS_NO_LIMIT()                   \
+    if (!can_take_memory_away()) {                         \
+        GTEST_SKIP() << "no limit of memory is kept here"; \
+    }
+
 /// Says how it went.
 template <typename T>
 [[noreturn]] void leave_with(const Result<T>& result) {
@@ -189,6 +207,7 @@ template <typename T>
 }
 
 TEST(SessionDeathTest, OpenSaysThatThereIsNoMemory) {
+    SKIP_WHERE_MEMORY_HAS_NO_LIMIT();
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     const auto open = [] {
         take_memory_away();
@@ -198,6 +217,7 @@ TEST(SessionDeathTest, OpenSaysThatThereIsNoMemory) {
 }
 
 TEST(SessionDeathTest, RunAndStartSayThatThereIsNoThread) {
+    SKIP_WHERE_MEMORY_HAS_NO_LIMIT();
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     const auto play = [](auto how) {
         auto session = swiping_session(Pace::live, 3);
