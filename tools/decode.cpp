@@ -17,6 +17,7 @@
 
 #include "core/base/file.hpp"
 #include "core/capture/image_codec.hpp"
+#include "core/capture/in_recording.hpp"
 #include "tools/commands.hpp"
 #include "tools/decode_pictures.hpp"
 #include "tools/decode_report.hpp"
@@ -69,10 +70,6 @@ bool stems_name_folders(const RecordingReader& recording) {
            });
 }
 
-Error in_recording(const RecordingReader& recording, const Error& error) {
-    return {error.code, recording.folder().string() + ": " + error.message};
-}
-
 Result<Chosen> choose_decoder(const RecordingReader& recording, const DecodeOptions& options) {
     DecodeSettings settings;
     settings.keep_maps = true;
@@ -100,12 +97,13 @@ Result<Chosen> choose_decoder(const RecordingReader& recording, const DecodeOpti
         }
         refusal = decoder.error();
         if (refusal.code != ErrorCode::unsupported || !options.order_from.empty()) {
-            return in_recording(recording, refusal);
+            return capture::in_recording(recording.folder(), refusal);
         }
     }
     auto decoder = create(OrderSource::none);
     if (!decoder) {
-        return in_recording(recording, recording.has_rig() ? refusal : decoder.error());
+        return capture::in_recording(recording.folder(),
+                                     recording.has_rig() ? refusal : decoder.error());
     }
     return Chosen{std::move(*decoder), false, "phase alone", refusal.message};
 }
@@ -274,7 +272,7 @@ class DecodeRun {
         const auto cloud =
             make_point_cloud(depth, recording_.rig(), chosen_.decoder.average().view());
         if (!cloud) {
-            return in_recording(recording_, cloud.error());
+            return capture::in_recording(recording_.folder(), cloud.error());
         }
         if (auto ok = write_ply(*cloud, output_->path() / inside / "cloud.ply"); !ok) {
             return ok;

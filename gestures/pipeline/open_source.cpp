@@ -9,6 +9,8 @@
 #ifdef XTRACK_HAS_RECORDINGS
 #include <xtrack/joint_recording.hpp>
 #include <xtrack/recording.hpp>
+
+#include "core/capture/in_recording.hpp"
 #endif
 
 #include "core/base/setting_up.hpp"
@@ -58,6 +60,11 @@ Error rig_missing(const RecordingReader& recording) {
                           "of the depth camera")};
 }
 
+Result<Session> in_recording(const std::filesystem::path& folder, Result<Session> session) {
+    return session ? std::move(session)
+                   : Result<Session>(capture::in_recording(folder, session.error()));
+}
+
 Result<Session> open_recording(const std::filesystem::path& folder, const SessionOptions& options) {
     auto recording = RecordingReader::open(folder);
     if (!recording) {
@@ -77,7 +84,7 @@ Result<Session> open_recording(const std::filesystem::path& folder, const Sessio
                 return rig_missing(*recording);
             }
             auto source = frame_source(*recording);
-            return source ? Session::create(std::move(*source), options)
+            return source ? in_recording(folder, Session::create(std::move(*source), options))
                           : Result<Session>(source.error());
         }
         case RecordingKind::depth: break;
@@ -86,7 +93,8 @@ Result<Session> open_recording(const std::filesystem::path& folder, const Sessio
         return rig_missing(*recording);
     }
     auto source = depth_source(*recording);
-    return source ? Session::create(std::move(*source), options) : Result<Session>(source.error());
+    return source ? in_recording(folder, Session::create(std::move(*source), options))
+                  : Result<Session>(source.error());
 }
 
 #else

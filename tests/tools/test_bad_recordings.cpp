@@ -340,6 +340,22 @@ TEST_F(Recording, IsNotDecodedOverSomethingElse) {
     EXPECT_FALSE(fs::exists(out_ / "depth.png"));
 }
 
+// Whoever finds these knows a rig and patterns and no files; `decode` may still give phase.
+TEST_F(Recording, WhoseRigOrPatternsCannotGiveDepthNamesTheFile) {
+    write_fringes(recording_);
+    const std::string good = text_of(recording_ / "rig.yaml");
+    Rig rig = plane_rig();
+    rig.projector_from_camera_T << 0.0, 100.0, 0.0;  // along the stripes
+    set_rig(recording_, rig);
+    expect_refused(xtrack_command({"replay", recording_.string()}), "/rig.yaml: camera and");
+
+    set_text(recording_ / "rig.yaml", good);
+    set_text(recording_ / "pattern.yaml",
+             capture::patterns_text(three_step_sequence(Axis::x, {512, 384}, 16.0)));
+    expect_refused(xtrack_command({"replay", recording_.string()}),
+                   "/pattern.yaml: its longest period of 16 px");
+}
+
 // A file that is not there may be left out; a link that leads nowhere is a mistake.
 TEST(BadRecording, ALinkToNothingIsNotPassedOver) {
     const TemporaryFolder folder;
