@@ -54,11 +54,17 @@ Result<void> check_images_are_there(const fs::path& folder,
                                     const std::vector<RecordingEntry>& entries) {
     for (std::size_t i = 0; i < entries.size(); ++i) {
         std::error_code ignored;
-        if (!fs::is_regular_file(folder / entries[i].file, ignored)) {
-            return Error{ErrorCode::not_found, (folder / "frames.csv").string() + " frame " +
-                                                   std::to_string(i) + ": file " + entries[i].file +
-                                                   " is not there; copy it or remove the row"};
+        const fs::file_type type = fs::status(folder / entries[i].file, ignored).type();
+        if (type == fs::file_type::regular) {
+            continue;
         }
+        const char* what = type == fs::file_type::not_found
+                               ? " is not there; copy it or remove the row"
+                           : type == fs::file_type::none ? " cannot be read; check the permissions"
+                                                         : " is no file; put the image there";
+        return Error{ErrorCode::not_found, (folder / "frames.csv").string() + " frame " +
+                                               std::to_string(i) + ": file " + entries[i].file +
+                                               what};
     }
     return {};
 }

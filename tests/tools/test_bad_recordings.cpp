@@ -80,6 +80,13 @@ const std::vector<Damage> kFringeDamages = {
      },
      "frames.csv"},
     {"missing_image", [](const fs::path& f) { fs::remove(frame_file(f, 1)); }, "000001.png"},
+    {"folder_for_an_image",
+     [](const fs::path& f) {
+         const fs::path image = frame_file(f, 1);
+         fs::remove(image);
+         fs::create_directory(image);
+     },
+     "000001.png is no file; put the image there"},
     {"truncated_image",
      [](const fs::path& f) {
          const std::string all = text_of(frame_file(f, 1));
