@@ -64,4 +64,15 @@ std::string number_text(double value) {
     return error == std::errc{} ? std::string(buffer.data(), end) : std::string("nan");
 }
 
+void append_fixed(std::string& out, float value, int digits) {
+    std::array<char, 64> buffer{};
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(),
+                                   static_cast<double>(value), std::chars_format::fixed, digits);
+    std::string_view text{buffer.data(), static_cast<std::size_t>(end.ptr - buffer.data())};
+    if (text.front() == '-' && text.find_first_not_of("-0.") == std::string_view::npos) {
+        text.remove_prefix(1);
+    }
+    out += text;
+}
+
 }  // namespace xtrack::base

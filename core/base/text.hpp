@@ -22,4 +22,8 @@ namespace xtrack::base {
 /// The shortest decimal text that reads back as the same number.
 [[nodiscard]] std::string number_text(double value);
 
+/// With so many digits after a point, whatever the locale has in its place; "-0.0" would be a
+/// difference of nothing. @param value finite
+void append_fixed(std::string& out, float value, int digits);
+
 }  // namespace xtrack::base

@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/base/text.hpp"
+
 namespace xtrack {
 
 namespace {
@@ -18,20 +20,13 @@ void append(std::string& out, std::int64_t value) {
     out.append(buffer.data(), end.ptr);
 }
 
-/// Independent of the locale; JSON has no infinities, and "-0.0" would be a difference of nothing.
+/// JSON has no infinities.
 void append(std::string& out, float value, int digits) {
-    if (!std::isfinite(value)) {
+    if (std::isfinite(value)) {
+        base::append_fixed(out, value, digits);
+    } else {
         out += "null";
-        return;
     }
-    std::array<char, 64> buffer{};
-    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(),
-                                   static_cast<double>(value), std::chars_format::fixed, digits);
-    std::string_view text{buffer.data(), static_cast<std::size_t>(end.ptr - buffer.data())};
-    if (text.front() == '-' && text.find_first_not_of("-0.") == std::string_view::npos) {
-        text.remove_prefix(1);
-    }
-    out += text;
 }
 
 void append(std::string& out, const Vec3f& v) {

@@ -2,7 +2,7 @@
 #include <xtrack/labels.hpp>
 
 #include <algorithm>
-#include <charconv>
+#include <array>
 #include <iterator>
 
 #include "core/base/csv.hpp"
@@ -228,15 +228,7 @@ Result<HandTruth> read_truth_row(const base::CsvReader& csv,
     return truth;
 }
 
-/// Independent of the locale: a decimal comma would be one column more.
-std::string length_text(float value_mm) {
-    constexpr int kDigits = 2;
-    std::array<char, 64> buffer{};
-    const auto end =
-        std::to_chars(buffer.data(), buffer.data() + buffer.size(), static_cast<double>(value_mm),
-                      std::chars_format::fixed, kDigits);
-    return {buffer.data(), end.ptr};
-}
+constexpr int kLengthDigits = 2;
 
 std::string point_text(const TrackedPoint& point) {
     if (!point.valid) {
@@ -244,7 +236,8 @@ std::string point_text(const TrackedPoint& point) {
     }
     std::string text;
     for (const float coordinate_mm : point.position_mm) {
-        text += "," + length_text(coordinate_mm);
+        text += ',';
+        base::append_fixed(text, coordinate_mm, kLengthDigits);
     }
     return text;
 }
@@ -318,7 +311,11 @@ std::string hand_truth_text(std::span<const HandTruth> truth) {
         for (std::size_t finger = 0; finger < kFingerCount; ++finger) {
             text += point_text(t.tips[finger]) + point_text(t.pads[finger]);
         }
-        text += "," + (t.pinch_mm >= 0.0F ? length_text(t.pinch_mm) : std::string()) + "\n";
+        text += ',';
+        if (t.pinch_mm >= 0.0F) {
+            base::append_fixed(text, t.pinch_mm, kLengthDigits);
+        }
+        text += '\n';
     }
     return text;
 }

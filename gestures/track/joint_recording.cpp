@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <limits>
 #include <optional>
 
 #include "core/base/csv.hpp"
 #include "core/base/file.hpp"
 #include "core/base/setting_up.hpp"
+#include "core/base/text.hpp"
 
 namespace xtrack {
 
@@ -199,13 +199,9 @@ Result<std::vector<HandFrame>> read_joint_recording(const std::filesystem::path&
 
 namespace {
 
-// A comma and a number with a point, whatever the program's locale has in its place.
 void append(std::string& text, float value, int digits) {
-    std::array<char, 64> number{};
-    const auto end = std::to_chars(number.data(), number.data() + number.size(),
-                                   static_cast<double>(value), std::chars_format::fixed, digits);
     text += ',';
-    text.append(number.data(), end.ptr);
+    base::append_fixed(text, value, digits);
 }
 
 }  // namespace

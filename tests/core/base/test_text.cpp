@@ -32,5 +32,15 @@ TEST(Text, QuotesAreShortAndPlain) {
     EXPECT_EQ(base::quoted(std::string(100, 'x')), "'" + std::string(40, 'x') + "...'");
 }
 
+TEST(Text, FixedDigitsHaveNoSignOfNothing) {
+    std::string text;
+    for (const float v : {1.25F, -0.04F, 0.0F, -12.96F, 3e38F}) {
+        append_fixed(text, v, 1);
+        text += ' ';
+    }
+    EXPECT_EQ(text.substr(0, 21), "1.2 0.0 0.0 -13.0 300");
+    EXPECT_EQ(text.size(), 18U + 42U);
+}
+
 }  // namespace
 }  // namespace xtrack::base
