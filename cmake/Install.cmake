@@ -26,7 +26,7 @@ foreach(part core gestures)
   foreach(library ${outside})
     if(library)
       string(REGEX REPLACE "^.*::" "" library ${library})
-      string(TOLOWER ${library} library)  # JPEG::JPEG is libjpeg
+      string(TOLOWER ${library} library)  # JPEG::JPEG is libjpeg, PNG::PNG libpng
       string(PREPEND XTRACK_PC_OUTSIDE "-l${library} ")
     endif()
   endforeach()

@@ -2,16 +2,14 @@
 #include "core/capture/image_codec.hpp"
 
 #include <exception>
-#include <new>
-#include <optional>
 #include <vector>
 
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/base/setting_up.hpp"
-#include "core/capture/image_check.hpp"
-#include "core/capture/jpeg.hpp"
+#include "core/capture/decoders.hpp"
+#include "core/capture/image_header.hpp"
 
 namespace xtrack::capture {
 
@@ -22,7 +20,7 @@ constexpr char kJpegFirst = '\xFF';
 std::string text_of(Size s) { return std::to_string(s.width) + "x" + std::to_string(s.height); }
 
 Result<void> check(std::string_view bytes, const std::string& name, Size size, int bits) {
-    const auto info = check_image(bytes, name);
+    const auto info = peek_image(bytes, name);
     if (!info) {
         return info.error();
     }
@@ -39,34 +37,16 @@ Result<void> check(std::string_view bytes, const std::string& name, Size size, i
     return {};
 }
 
-// Into a Mat of OpenCV's own: one that is handed over comes back as it was when the header cannot
-// be read, and would pass for an image.
-template <typename T>
-Result<void> decode(std::string_view bytes, const std::string& name, Size size, int type, int flags,
-                    Image<T>& out) {
-    const std::optional<std::string> bare = without_ancillary_chunks(bytes);
-    if (bare) {
-        bytes = *bare;
+Result<void> decode(std::string_view bytes, const std::string& name, const Rows& out) {
+    const bool is_jpeg = bytes.front() == kJpegFirst;
+    switch (is_jpeg ? decode_jpeg(bytes, out) : decode_png(bytes, out)) {
+        case Decoded::whole: return {};
+        case Decoded::no_memory: return base::out_of_memory(name.c_str());
+        case Decoded::damaged: break;
     }
-    try {
-        const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8UC1,
-                              const_cast<char*>(bytes.data()));  // NOLINT: OpenCV reads only
-        const cv::Mat decoded = cv::imdecode(encoded, flags);
-        if (decoded.cols == size.width && decoded.rows == size.height && decoded.type() == type) {
-            decoded.copyTo(cv::Mat(size.height, size.width, type, out.row(0),
-                                   static_cast<std::size_t>(out.stride()) * sizeof(T)));
-            return {};
-        }
-    } catch (const std::bad_alloc&) {
-        return base::out_of_memory(name.c_str());
-    } catch (const cv::Exception& e) {
-        if (e.code == cv::Error::StsNoMem) {
-            return base::out_of_memory(name.c_str());
-        }
-    } catch (const std::exception&) {
-        // The message below says all that matters to the user.
-    }
-    return Error{ErrorCode::malformed, name + ": cannot be decoded; save it again as PNG"};
+    return Error{ErrorCode::malformed, name + ": the " + (is_jpeg ? "JPEG" : "PNG") +
+                                           " is damaged; copy the recording again, or remove its "
+                                           "row"};
 }
 
 Result<std::string> encode(const char* extension, const cv::Mat& image,
@@ -97,14 +77,11 @@ Result<void> decode_image(std::string_view bytes, const std::string& name, Size 
     if (auto ok = check(bytes, name, size, kBits); !ok) {
         return ok;
     }
-    if (bytes.front() == kJpegFirst) {
-        return decode_jpeg(bytes, name, size, format, out);
-    }
     const bool grey = format == PixelFormat::grey8;
     out.resize(size.width * (grey ? 1 : 3), size.height);
-    const int flags =
-        cv::IMREAD_IGNORE_ORIENTATION | (grey ? cv::IMREAD_GRAYSCALE : cv::IMREAD_COLOR);
-    return decode(bytes, name, size, grey ? CV_8UC1 : CV_8UC3, flags, out);
+    return decode(bytes, name,
+                  {size, grey ? Layout::grey8 : Layout::bgr8, out.row(0),
+                   static_cast<std::size_t>(out.stride())});
 }
 
 Result<void> decode_depth(std::string_view bytes, const std::string& name, Size size,
@@ -119,7 +96,10 @@ Result<void> decode_depth(std::string_view bytes, const std::string& name, Size 
                                                " channels, depth has one; save it as 16-bit grey"};
     }
     out.resize(size.width, size.height);
-    return decode(bytes, name, size, CV_16UC1, cv::IMREAD_ANYDEPTH | cv::IMREAD_GRAYSCALE, out);
+    return decode(bytes, name,
+                  {size, Layout::grey16,
+                   reinterpret_cast<std::uint8_t*>(out.row(0)),  // NOLINT: the decoder's bytes
+                   static_cast<std::size_t>(out.stride()) * sizeof(std::uint16_t)});
 }
 
 Result<std::string> encode_png(ImageView<const std::uint8_t> image, PixelFormat format) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/capture/jpeg.hpp"
-
 #include <csetjmp>
 #include <cstdio>
 
 #include <jpeglib.h>
+// After it: it stands on its types.
+#include <jerror.h>
+
+#include "core/capture/decoders.hpp"
 
 namespace xtrack::capture {
 
@@ -26,9 +28,10 @@ void on_message(j_common_ptr jpeg, int level) {
     }
 }
 
-/// Nothing in it may need a destructor: longjmp() passes them by.
-bool decode_rows(std::string_view bytes, Size size, J_COLOR_SPACE space, std::uint8_t* out,
-                 std::size_t stride) {
+}  // namespace
+
+// Nothing in it may need a destructor: longjmp() passes them by.
+Decoded decode_jpeg(std::string_view bytes, const Rows& out) {
     jpeg_decompress_struct jpeg{};
     Trouble trouble{};
     jpeg.err = jpeg_std_error(&trouble.manager);
@@ -36,38 +39,25 @@ bool decode_rows(std::string_view bytes, Size size, J_COLOR_SPACE space, std::ui
     trouble.manager.emit_message = on_message;
     if (setjmp(trouble.back) != 0) {  // NOLINT: the way out that libjpeg documents
         jpeg_destroy_decompress(&jpeg);
-        return false;
+        return trouble.manager.msg_code == JERR_OUT_OF_MEMORY ? Decoded::no_memory
+                                                              : Decoded::damaged;
     }
     jpeg_create_decompress(&jpeg);
     jpeg_mem_src(&jpeg, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
     jpeg_read_header(&jpeg, TRUE);
-    jpeg.out_color_space = space;
+    jpeg.out_color_space = out.layout == Layout::grey8 ? JCS_GRAYSCALE : JCS_EXT_BGR;
     jpeg_start_decompress(&jpeg);
-    const bool fits = jpeg.output_width == static_cast<JDIMENSION>(size.width) &&
-                      jpeg.output_height == static_cast<JDIMENSION>(size.height);
+    const bool fits = jpeg.output_width == static_cast<JDIMENSION>(out.size.width) &&
+                      jpeg.output_height == static_cast<JDIMENSION>(out.size.height);
     while (fits && jpeg.output_scanline < jpeg.output_height) {
-        JSAMPROW row = out + jpeg.output_scanline * stride;
+        JSAMPROW row = out.first + jpeg.output_scanline * out.stride;
         jpeg_read_scanlines(&jpeg, &row, 1);
     }
     if (fits) {
         jpeg_finish_decompress(&jpeg);
     }
     jpeg_destroy_decompress(&jpeg);
-    return fits;
-}
-
-}  // namespace
-
-Result<void> decode_jpeg(std::string_view bytes, const std::string& name, Size size,
-                         PixelFormat format, Image<std::uint8_t>& out) {
-    const bool grey = format == PixelFormat::grey8;
-    out.resize(size.width * (grey ? 1 : 3), size.height);
-    if (!decode_rows(bytes, size, grey ? JCS_GRAYSCALE : JCS_EXT_BGR, out.row(0),
-                     static_cast<std::size_t>(out.stride()))) {
-        return Error{ErrorCode::malformed,
-                     name + ": the JPEG is damaged; copy the recording again, or remove its row"};
-    }
-    return {};
+    return fits ? Decoded::whole : Decoded::damaged;
 }
 
 }  // namespace xtrack::capture

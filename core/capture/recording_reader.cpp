@@ -8,8 +8,8 @@
 #include "core/base/file.hpp"
 #include "core/base/setting_up.hpp"
 #include "core/capture/frame_list.hpp"
-#include "core/capture/image_check.hpp"
 #include "core/capture/image_codec.hpp"
+#include "core/capture/image_header.hpp"
 #include "core/capture/yaml_file.hpp"
 
 namespace xtrack {

@@ -91,8 +91,8 @@ Result<void> check_yaml_text(const std::string& text, const std::string& name) {
     return {};
 }
 
-YamlMap::YamlMap(cv::FileNode node, std::string name, std::string prefix)
-    : node_(std::move(node)), name_(std::move(name)), prefix_(std::move(prefix)) {}
+YamlMap::YamlMap(const cv::FileNode& node, std::string name, std::string prefix)
+    : node_(node), name_(std::move(name)), prefix_(std::move(prefix)) {}
 
 Error YamlMap::error(const char* key, const std::string& what) const {
     return {ErrorCode::malformed, name_ + ": " + prefix_ + key + " " + what};

@@ -19,7 +19,7 @@ namespace xtrack::capture {
 class YamlMap {
  public:
     /// @param prefix of field names in messages, such as "sequence[3]."
-    YamlMap(cv::FileNode node, std::string name, std::string prefix = {});
+    YamlMap(const cv::FileNode& node, std::string name, std::string prefix = {});
 
     [[nodiscard]] bool has(const char* key) const;
     [[nodiscard]] Result<double> number(const char* key) const;

@@ -117,7 +117,7 @@ bool fit_taps(std::span<const double> phases_rad, TapSet& set) noexcept {
         normal += row(phase) * row(phase).transpose();
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(normal);
-    const Eigen::Vector3d values = solver.eigenvalues();  // ascending squares of singular values
+    const Eigen::Vector3d& values = solver.eigenvalues();  // ascending squares of singular values
     if (!(values(0) > kMinConditioning * kMinConditioning * values(2))) {
         return false;
     }

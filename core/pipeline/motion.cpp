@@ -361,7 +361,8 @@ void MotionEstimator::pair_images(const FrameWindow& window) noexcept {
 }
 
 void MotionEstimator::choose_cells() noexcept {
-    constexpr float kSamples = (kCellPx / kSampleStepPx) * (kCellPx / kSampleStepPx);
+    constexpr int kSamplesAlong = kCellPx / kSampleStepPx;
+    constexpr auto kSamples = static_cast<float>(kSamplesAlong * kSamplesAlong);
     for (int cy = 0; cy < age_.height(); ++cy) {
         for (int cx = 0; cx < age_.width(); ++cx) {
             if (age_.at(cx, cy) == 0) {

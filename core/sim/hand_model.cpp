@@ -124,7 +124,7 @@ void add_finger(std::size_t finger, const Vec3f& p, float amount, Weights& w) {
                            : finger == kThumb ? kBlendThumbRootMm
                                               : kBlendKnuckleMm;
         const float past = smooth_step(-half, half, (p - joint[s]).dot(axis));
-        const std::size_t bone = s == 0 ? std::size_t{kHandBone} : finger_bone(finger, s - 1);
+        const std::size_t bone = s == 0 ? kHandBone : finger_bone(finger, s - 1);
         w[bone] += rest * (1.0F - past);
         rest *= past;
     }
@@ -272,8 +272,8 @@ Vec3f pad_direction(std::size_t finger, std::size_t segment_index) {
 }
 
 const HandModel& hand_model() {
-    static const HandModel model = build_hand_model();
-    return model;
+    static const HandModel kModel = build_hand_model();
+    return kModel;
 }
 
 }  // namespace xtrack::sim

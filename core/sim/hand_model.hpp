@@ -15,7 +15,10 @@ namespace xtrack::sim {
 
 /// Bones that carry skin. Each finger has three, thumb first: the thumb's are metacarpal, proximal,
 /// distal, the others' proximal, intermediate, distal.
-enum Bone : std::uint8_t { kUpperArm, kForearm, kHandBone, kFirstFingerBone };
+inline constexpr std::size_t kUpperArm = 0;
+inline constexpr std::size_t kForearm = 1;
+inline constexpr std::size_t kHandBone = 2;
+inline constexpr std::size_t kFirstFingerBone = 3;
 inline constexpr std::size_t kBonesPerFinger = 3;
 inline constexpr std::size_t kBoneCount = kFirstFingerBone + kBonesPerFinger * kSimFingerCount;
 inline constexpr std::size_t kThumb = 0;

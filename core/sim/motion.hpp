@@ -13,11 +13,11 @@
 
 namespace xtrack::sim {
 
-/// x(t) of N values that move from target to target with the least jerk (Flash, Hogan 1985).
-template <std::size_t N>
+/// x(t) of kValues values that move from target to target with the least jerk (Flash, Hogan 1985).
+template <std::size_t kValues>
 class Track {
  public:
-    using Value = std::array<float, N>;
+    using Value = std::array<float, kValues>;
     explicit Track(const Value& start) : start_(start) {}
 
     /// Moves to `target` between the two times; moves must not overlap.
@@ -47,7 +47,7 @@ class Track {
         }
         const auto s = static_cast<float>(u * u * u * (10.0 + u * (-15.0 + 6.0 * u)));
         Value value{};
-        for (std::size_t i = 0; i < N; ++i) {
+        for (std::size_t i = 0; i < kValues; ++i) {
             value[i] = from[i] + (move.target[i] - from[i]) * s;
         }
         return value;

@@ -97,12 +97,11 @@ Result<Session> Session::Impl::session_of(std::unique_ptr<Source> source, Pace p
         if (!source) {
             return Error{ErrorCode::invalid_argument, "Session::create: the source is null"};
         }
-        auto processor = make_processor(*source);
-        if (!processor) {
-            return processor.error();
+        auto made = make_processor(*source);
+        if (!made) {
+            return made.error();
         }
-        return Session(
-            std::make_unique<Impl>(Input(std::move(source)), std::move(*processor), pace));
+        return Session(std::make_unique<Impl>(Input(std::move(source)), std::move(*made), pace));
     });
 }
 

@@ -77,6 +77,74 @@ TEST(ImageCodec, RuinedJpegsAreRefusedInSilence) {
     }
 }
 
+TEST(ImageCodec, PngsAreThePixelsThatOpenCvSees) {
+    cv::Mat colour(12, 16, CV_8UC3);
+    cv::randu(colour, 0, 255);
+    cv::Mat alpha;
+    cv::cvtColor(colour, alpha, cv::COLOR_BGR2BGRA);
+    cv::Mat plain;
+    cv::cvtColor(colour, plain, cv::COLOR_BGR2GRAY);
+    for (const cv::Mat& image : {colour, alpha, plain}) {
+        std::vector<unsigned char> encoded;
+        cv::imencode(".png", image, encoded);
+        for (const PixelFormat format : {PixelFormat::grey8, PixelFormat::bgr8}) {
+            const bool grey = format == PixelFormat::grey8;
+            const cv::Mat want =
+                cv::imdecode(encoded, grey ? cv::IMREAD_GRAYSCALE : cv::IMREAD_COLOR);
+            Image<std::uint8_t> read;
+            ASSERT_TRUE(decode_image(std::string(encoded.begin(), encoded.end()), "a.png", {16, 12},
+                                     format, read)
+                            .ok());
+            for (int y = 0; y < want.rows; ++y) {
+                ASSERT_TRUE(std::equal(read.row(y), read.row(y) + read.width(), want.ptr(y))) << y;
+            }
+        }
+    }
+    Image<std::uint16_t> depth(16, 12);
+    for (int i = 0; i < 16 * 12; ++i) {
+        depth.row(i / 16)[i % 16] = static_cast<std::uint16_t>(i * 341);
+    }
+    Image<std::uint16_t> read;
+    ASSERT_TRUE(decode_depth(*encode_png(depth.view()), "a.png", {16, 12}, read).ok());
+    for (int y = 0; y < 12; ++y) {
+        ASSERT_TRUE(std::equal(read.row(y), read.row(y) + 16, depth.row(y))) << y;
+    }
+}
+
+TEST(ImageCodec, TornAndFlippedPngsAreRefusedInSilence) {
+    Image<std::uint16_t> image(40, 30, 1234);
+    const std::string whole = *encode_png(image.view());
+    Image<std::uint16_t> read;
+    testing::internal::CaptureStderr();
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+        EXPECT_FALSE(decode_depth(whole.substr(0, i), "a.png", {40, 30}, read).ok()) << i;
+        std::string flipped = whole;
+        flipped[i] = static_cast<char>(flipped[i] ^ 0x20);
+        EXPECT_FALSE(decode_depth(flipped, "a.png", {40, 30}, read).ok()) << i;
+    }
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+// The checksums hold; what is wrong is in the compressed rows.
+TEST(ImageCodec, PngsOfOtherHeightThanTheirRowsAreRefusedInSilence) {
+    const std::string tall = png(CV_16UC1);
+    Image<std::uint16_t> other(16, 20, 700);
+    const std::string of_20_rows = *encode_png(other.view());
+    constexpr std::size_t kHeaderEnd = 8 + 25;
+    Image<std::uint16_t> read;
+    testing::internal::CaptureStderr();
+    const auto short_of_rows = decode_depth(
+        of_20_rows.substr(0, kHeaderEnd) + tall.substr(kHeaderEnd), "a.png", {16, 20}, read);
+    const auto with_more_rows = decode_depth(
+        tall.substr(0, kHeaderEnd) + of_20_rows.substr(kHeaderEnd), "a.png", {16, 12}, read);
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    for (const auto* result : {&short_of_rows, &with_more_rows}) {
+        ASSERT_FALSE(result->ok());
+        EXPECT_EQ(result->error().code, ErrorCode::malformed);
+        EXPECT_THAT(result->error().message, testing::HasSubstr("a.png: the PNG is damaged"));
+    }
+}
+
 TEST(ImageCodec, OddChunksAreNotChattedAbout) {
     // A gamma of one byte, which libpng knows to be wrong; its checksum is right.
     const std::string odd("\0\0\0\1gAMA\0\x5F\xB8\x03\xCF", 13);

@@ -142,16 +142,15 @@ TEST(Taps, PhaseDoesNotDependOnTheStartOfTheWindowOrTheSignOfTheStep) {
 TEST(Taps, LeastSquaresTakesAnyPhasesInAnyOrder) {
     const std::vector<double> uneven{2.0, -1.0, 0.3, 5.0};
     const TapSet set = least_squares_taps(uneven).value();
-    std::vector<double> seen;
-    for (const double phase : uneven) {
-        seen.push_back(70.0 + 40.0 * std::cos(-2.0 + phase));
-    }
+    std::vector<double> seen(uneven.size());
+    std::transform(uneven.begin(), uneven.end(), seen.begin(),
+                   [](double phase) { return 70.0 + 40.0 * std::cos(-2.0 + phase); });
     EXPECT_NEAR(std::arg(sum(set, seen)), -2.0, 1e-5);
     EXPECT_NEAR(std::abs(sum(set, seen)), 40.0, 1e-3);
     for (const int steps : {3, 4, 5, 8, 32}) {
-        std::vector<double> even;
+        std::vector<double> even(static_cast<std::size_t>(steps));
         for (int n = 0; n < steps; ++n) {
-            even.push_back(-2.0 * kPi * n / steps);
+            even[static_cast<std::size_t>(n)] = -2.0 * kPi * n / steps;
         }
         EXPECT_NEAR(least_squares_taps(even).value().noise_gain(), std::sqrt(2.0 / steps), 1e-6);
     }

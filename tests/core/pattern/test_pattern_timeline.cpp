@@ -65,9 +65,9 @@ TEST(PatternTimeline, LastShowHasNoEndAndFirstNoPast) {
 // The webcam preset: 33.3 ms frames, 60 Hz projector, exposure 16.7 ms, readout 16 ms, each pattern
 // held for two camera frames. Every second frame at least must be mostly clean.
 TEST(PatternTimeline, HoldingForTwoFramesGivesOneCleanFrameEach) {
-    std::vector<PatternShow> shows;
+    std::vector<PatternShow> shows(30);
     for (int i = 0; i < 30; ++i) {
-        shows.push_back({Stamp::from_us(i * 66667), i % 3});
+        shows[static_cast<std::size_t>(i)] = {Stamp::from_us(i * 66667), i % 3};
     }
     for (int offset_us = 0; offset_us < 33333; offset_us += 1111) {
         for (int hold = 1; hold < 20; ++hold) {

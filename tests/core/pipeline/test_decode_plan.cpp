@@ -13,7 +13,7 @@ namespace {
 constexpr Size kProjector{512, 384};
 
 Error refusal(const PatternSequence& patterns, DecodeSettings settings = {},
-              Rig rig = test::plane_rig()) {
+              const Rig& rig = test::plane_rig()) {
     auto made = DepthDecoder::create(rig, patterns, {96, 64}, settings);
     EXPECT_FALSE(made);
     return made ? Error{} : made.error();

@@ -19,6 +19,7 @@
 namespace xtrack {
 namespace {
 
+// NOLINTNEXTLINE(bugprone-macro-parentheses): it declares `recording`
 #define LOAD_OR_SKIP(name, recording)                                            \
     test::RecordingOnDisk recording;                                             \
     if (!test::load_recording(name, recording)) {                                \

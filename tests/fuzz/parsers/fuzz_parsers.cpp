@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/fuzz/parsers/fuzz_parsers.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <string>
 
@@ -8,7 +9,8 @@
 #include <xtrack/labels.hpp>
 
 #include "core/capture/frame_list.hpp"
-#include "core/capture/image_check.hpp"
+#include "core/capture/image_codec.hpp"
+#include "core/capture/image_header.hpp"
 #include "core/capture/yaml_file.hpp"
 
 namespace {
@@ -83,7 +85,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         }
         case 5: check_message(parse_poses(text, "f")); break;
         case 6: check_message(parse_hand_truth(text, "f")); break;
-        case 7: check_message(capture::check_image(text, "f")); break;
+        case 7: {
+            const auto info = capture::peek_image(text, "f");
+            check_message(info);
+            if (info && std::max(info->size.width, info->size.height) <= 256) {
+                Image<std::uint8_t> image;
+                check_message(
+                    capture::decode_image(text, "f", info->size, PixelFormat::bgr8, image));
+            }
+            break;
+        }
     }
     return 0;
 }

@@ -203,7 +203,7 @@ bool can_take_memory_away() {
 template <typename T>
 [[noreturn]] void leave_with(const Result<T>& result) {
     std::fputs(result ? "there was enough" : result.error().message.c_str(), stderr);
-    std::exit(result ? 1 : 0);
+    std::exit(result ? 1 : 0);  // NOLINT(concurrency-mt-unsafe): one thread
 }
 
 TEST(SessionDeathTest, OpenSaysThatThereIsNoMemory) {

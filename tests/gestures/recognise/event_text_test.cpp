@@ -72,9 +72,10 @@ TEST(EventText, NamesAreThoseOfLabels) {
 }
 
 TEST(EventText, IgnoresTheLocale) {
-    const char* const german = std::setlocale(LC_ALL, "de_DE.UTF-8");
+    const char* const german =
+        std::setlocale(LC_ALL, "de_DE.UTF-8");  // NOLINT(concurrency-mt-unsafe): one thread
     EXPECT_EQ(to_json(swipe()), kSwipe);
-    std::setlocale(LC_ALL, "C");
+    std::setlocale(LC_ALL, "C");  // NOLINT(concurrency-mt-unsafe): one thread
     if (german == nullptr) {
         GTEST_SKIP() << "the locale de_DE.UTF-8 is not installed";
     }

@@ -136,9 +136,10 @@ TEST(HandTruth, IgnoresTheLocale) {
     HandTruth truth;
     truth.palm = {{1.5F, -2.0F, 700.25F}, true};
     truth.pinch_mm = 12.5F;
-    const char* const german = std::setlocale(LC_ALL, "de_DE.UTF-8");
+    const char* const german =
+        std::setlocale(LC_ALL, "de_DE.UTF-8");  // NOLINT(concurrency-mt-unsafe): one thread
     const std::string text = hand_truth_text({{truth}});
-    std::setlocale(LC_ALL, "C");
+    std::setlocale(LC_ALL, "C");  // NOLINT(concurrency-mt-unsafe): one thread
     EXPECT_THAT(text, HasSubstr(",1.50,-2.00,700.25,"));
     EXPECT_THAT(text, HasSubstr(",12.50\n"));
     if (german == nullptr) {

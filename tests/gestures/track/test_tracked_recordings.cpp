@@ -95,6 +95,7 @@ double quantile(std::vector<double> v, double q) {
 
 fs::path shared(const std::string& name) { return fs::path(XTRACK_SHARED_DATA) / name; }
 
+// NOLINTNEXTLINE(bugprone-macro-parentheses): it declares `reader`
 #define OPEN_OR_SKIP(name, reader)                                        \
     if (!fs::exists(shared(name))) {                                      \
         GTEST_SKIP() << shared(name) << " is not there";                  \
