@@ -26,7 +26,7 @@ using nlohmann::json;
 
 struct EvalOptions {
     std::vector<std::string> recordings;
-    std::string gestures;
+    std::optional<std::string> gestures;
     bool json = false;
 };
 

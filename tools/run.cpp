@@ -67,9 +67,13 @@ void add_run(CLI::App& app, int& exit_status) {
             return;
         }
         auto session = open(*run, options);
-        exit_status = session
-                          ? play(*session, run->stream, options.pace, !is_simulator(run->source))
-                          : fail(session.error());
+        if (session) {
+            exit_status = play(*session, run->stream, options.pace, !is_simulator(run->source));
+        } else {
+            exit_status = session.error().code == ErrorCode::invalid_argument
+                              ? usage(session.error())
+                              : fail(session.error());
+        }
     });
 }
 

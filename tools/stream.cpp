@@ -87,14 +87,14 @@ void add_stream_options(CLI::App& command, StreamOptions& options) {
     command.add_flag("--json", options.json, "Events as jsonl, and --stats as JSON");
 }
 
-Result<void> choose_gestures(const std::string& list, GestureSettings& settings) {
-    if (list.empty()) {
+Result<void> choose_gestures(const std::optional<std::string>& list, GestureSettings& settings) {
+    if (!list) {
         return {};
     }
     for (const auto& [name, member] : kSwitches) {
         settings.*member = false;
     }
-    std::istringstream names(list);
+    std::istringstream names(*list + ',');  // so that what is empty is read, and refused
     for (std::string wanted; std::getline(names, wanted, ',');) {
         bool found = false;
         for (const auto& [name, member] : kSwitches) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include <CLI/App.hpp>
@@ -14,7 +15,7 @@ namespace xtrack::tools {
 
 /// What `run` and `replay` share: which gestures, and what is printed.
 struct StreamOptions {
-    std::string gestures;
+    std::optional<std::string> gestures;
     EventFormat events = EventFormat::text;
     EventFormat hands = EventFormat::none;
     bool statistics = false;
@@ -25,7 +26,8 @@ void add_stream_options(CLI::App& command, StreamOptions& options);
 
 /// Turns a list such as `swipe,pinch` into switches.
 /// @errors invalid_argument: names the one that is not known, and those that are
-[[nodiscard]] Result<void> choose_gestures(const std::string& list, GestureSettings& settings);
+[[nodiscard]] Result<void> choose_gestures(const std::optional<std::string>& list,
+                                           GestureSettings& settings);
 
 /// Runs a session to its end and prints. @param whole what is interrupted is not the whole answer:
 /// a recording's @param items how many the source holds, for a progress bar; 0 = not known

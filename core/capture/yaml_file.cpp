@@ -2,8 +2,10 @@
 #include "core/capture/yaml_file.hpp"
 
 #include <exception>
+#include <new>
 #include <utility>
 
+#include "core/base/setting_up.hpp"
 #include "core/capture/yaml_reader.hpp"
 
 namespace xtrack::capture {
@@ -26,6 +28,8 @@ Result<T> with_storage(const std::string& text, const std::string& name, const R
         if (storage.isOpened() && storage.root().isMap()) {
             return read(YamlMap(storage.root(), name));
         }
+    } catch (const std::bad_alloc&) {
+        return base::out_of_memory(name.c_str());
     } catch (const std::exception&) {
         // OpenCV's texts name its own source lines; the user needs to know the file.
     }
