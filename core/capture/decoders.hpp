@@ -12,7 +12,7 @@ namespace xtrack::capture {
 /// How the pixels lie in memory.
 enum class Layout : std::uint8_t { grey8, bgr8, grey16 };
 
-[[nodiscard]] constexpr int bytes_per_pixel(Layout layout) {
+[[nodiscard]] constexpr std::size_t bytes_per_pixel(Layout layout) {
     return layout == Layout::grey8 ? 1 : layout == Layout::bgr8 ? 3 : 2;
 }
 
