@@ -19,12 +19,13 @@
 namespace xtrack {
 namespace {
 
-// NOLINTNEXTLINE(bugprone-macro-parentheses): it declares `recording`
+// NOLINTBEGIN(bugprone-macro-parentheses): it declares `recording`
 #define LOAD_OR_SKIP(name, recording)                                            \
     test::RecordingOnDisk recording;                                             \
     if (!test::load_recording(name, recording)) {                                \
         GTEST_SKIP() << "no recording " << name << " in " << XTRACK_SHARED_DATA; \
     }
+// NOLINTEND(bugprone-macro-parentheses)
 
 DepthDecoder decode_all(const test::RecordingOnDisk& recording, DecodeSettings settings) {
     settings.keep_maps = true;

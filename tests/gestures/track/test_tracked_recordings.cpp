@@ -95,7 +95,7 @@ double quantile(std::vector<double> v, double q) {
 
 fs::path shared(const std::string& name) { return fs::path(XTRACK_SHARED_DATA) / name; }
 
-// NOLINTNEXTLINE(bugprone-macro-parentheses): it declares `reader`
+// NOLINTBEGIN(bugprone-macro-parentheses): it declares `reader`
 #define OPEN_OR_SKIP(name, reader)                                        \
     if (!fs::exists(shared(name))) {                                      \
         GTEST_SKIP() << shared(name) << " is not there";                  \
@@ -103,6 +103,7 @@ fs::path shared(const std::string& name) { return fs::path(XTRACK_SHARED_DATA) /
     Result<RecordingReader> opened = RecordingReader::open(shared(name)); \
     ASSERT_TRUE(opened.ok()) << opened.error().message;                   \
     const RecordingReader& reader = opened.value()
+// NOLINTEND(bugprone-macro-parentheses)
 
 class Rendered : public testing::TestWithParam<std::tuple<const char*, bool>> {};
 
