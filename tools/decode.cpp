@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <xtrack/depth_decoder.hpp>
+#include <xtrack/phase_ripple.hpp>
 #include <xtrack/point_cloud.hpp>
 #include <xtrack/recording.hpp>
 
@@ -19,6 +20,7 @@
 #include "core/capture/image_codec.hpp"
 #include "core/capture/in_recording.hpp"
 #include "tools/commands.hpp"
+#include "tools/decode_gamma.hpp"
 #include "tools/decode_pictures.hpp"
 #include "tools/decode_report.hpp"
 #include "tools/interrupt.hpp"
@@ -37,6 +39,7 @@ struct DecodeOptions {
     std::string out;
     bool all = false;
     std::string order_from;
+    std::string gamma;
     bool json = false;
     double min_modulation = DecodeSettings{}.min_modulation;
 };
@@ -59,6 +62,8 @@ struct Chosen {
     std::string note;
 };
 
+int steps_of(const std::vector<double>& phases) { return static_cast<int>(phases.size()); }
+
 // Folders of frames are named as their files where these names tell them apart and name a folder:
 // what is left of "...png" without its extension is the parent.
 bool stems_name_folders(const RecordingReader& recording) {
@@ -70,7 +75,8 @@ bool stems_name_folders(const RecordingReader& recording) {
            });
 }
 
-Result<Chosen> choose_decoder(const RecordingReader& recording, const DecodeOptions& options) {
+Result<Chosen> choose_decoder(const RecordingReader& recording, const PatternSequence& patterns,
+                              const DecodeOptions& options) {
     DecodeSettings settings;
     settings.keep_maps = true;
     settings.min_modulation = options.min_modulation;
@@ -79,8 +85,7 @@ Result<Chosen> choose_decoder(const RecordingReader& recording, const DecodeOpti
     settings.motion = options.all ? MotionHandling::follow : MotionHandling::off;
     const auto create = [&](OrderSource order) {
         settings.order = order;
-        return DepthDecoder::create(recording.rig(), recording.patterns(), recording.image_size(),
-                                    settings);
+        return DepthDecoder::create(recording.rig(), patterns, recording.image_size(), settings);
     };
     Error refusal{ErrorCode::unsupported,
                   "no rig.yaml: phase and modulation alone, no depth; add the calibration"};
@@ -110,10 +115,11 @@ Result<Chosen> choose_decoder(const RecordingReader& recording, const DecodeOpti
 
 class DecodeRun {
  public:
-    DecodeRun(const DecodeOptions& options, RecordingReader recording, Chosen chosen,
-              OrderDepth order)
+    DecodeRun(const DecodeOptions& options, RecordingReader recording, PatternSequence patterns,
+              Chosen chosen, OrderDepth order)
         : options_(options),
           recording_(std::move(recording)),
+          patterns_(std::move(patterns)),
           chosen_(std::move(chosen)),
           order_(std::move(order)),
           numbered_(!stems_name_folders(recording_)) {}
@@ -153,7 +159,11 @@ class DecodeRun {
     }
 
     [[nodiscard]] std::string answer() const {
-        const std::string method = describe(recording_.patterns()) + "; " + chosen_.order;
+        std::string method = describe(patterns_) + "; " + chosen_.order;
+        if (!options_.gamma.empty()) {
+            method += fmt::format("; gamma {:.2f}{}", *patterns_.gamma,
+                                  options_.gamma == "auto" ? " from the fringes" : "");
+        }
         return options_.json ? json_of(method, chosen_.note, reports_)
                              : table_of(method, chosen_.note, reports_);
     }
@@ -245,6 +255,9 @@ class DecodeRun {
         if (auto ok = write(inside / "wrapped.tiff", capture::encode_tiff(wrapped.view())); !ok) {
             return ok;
         }
+        if (const auto ripple = measure_ripple(map, steps_of(shortest_phases(patterns_)))) {
+            report.ripple = *ripple;
+        }
         if (chosen_.makes_depth) {
             return {};
         }
@@ -286,6 +299,7 @@ class DecodeRun {
 
     DecodeOptions options_;
     RecordingReader recording_;
+    PatternSequence patterns_;  // with the gamma that is corrected
     Chosen chosen_;
     OrderDepth order_;
     bool numbered_;  // folders of frames are named by number: their files' names do not tell them
@@ -308,11 +322,15 @@ int decode(const DecodeOptions& options) {
     if (!order) {
         return fail(order.error());
     }
-    auto chosen = choose_decoder(*recording, options);
+    auto patterns = with_gamma(*recording, options.gamma);
+    if (!patterns) {
+        return fail(patterns.error());
+    }
+    auto chosen = choose_decoder(*recording, *patterns, options);
     if (!chosen) {
         return fail(chosen.error());
     }
-    DecodeRun run(options, *recording, std::move(*chosen), std::move(*order));
+    DecodeRun run(options, *recording, *patterns, std::move(*chosen), std::move(*order));
     if (auto ok = run.run(); !ok) {
         const int status = fail(ok.error());
         return interrupted() ? kInterruptedStatus : status;
@@ -341,12 +359,20 @@ void add_decode(CLI::App& app, int& exit_status) {
         ->add_option("--min-modulation", options->min_modulation,
                      "Fringe amplitude below which a pixel is masked, grey levels")
         ->capture_default_str();
+    command->add_option(
+        "--gamma", options->gamma,
+        "The projector's response, light = value^gamma: a number, or auto to find it "
+        "from the fringes (default: as pattern.yaml says)");
     command->add_flag("--json", options->json, "The figures as one JSON object");
     command->callback([options, &exit_status] {
         DecodeSettings settings;
         settings.min_modulation = options->min_modulation;
         if (const auto ok = validate(settings); !ok) {
             exit_status = usage(ok.error());
+            return;
+        }
+        if (const std::string why = gamma_complaint(options->gamma); !why.empty()) {
+            exit_status = usage({ErrorCode::invalid_argument, why});
             return;
         }
         exit_status = decode(*options);

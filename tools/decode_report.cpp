@@ -38,6 +38,28 @@ double percent(std::size_t part, std::size_t whole) {
     return whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
 }
 
+const char* name_of(RippleCause cause) {
+    switch (cause) {
+        case RippleCause::none: break;
+        case RippleCause::brightness: return "brightness";
+        case RippleCause::steps: return "steps";
+        case RippleCause::gamma: return "gamma";
+    }
+    return "none";
+}
+
+const char* advice_on(RippleCause cause) {
+    switch (cause) {
+        case RippleCause::none: break;
+        case RippleCause::brightness:
+            return "the images differ in brightness: lock exposure and gain; or something moved";
+        case RippleCause::steps:
+            return "the phases are not the patterns': check the timing; or something moved evenly";
+        case RippleCause::gamma: return "the projector's gamma: --gamma auto corrects it";
+    }
+    return "";
+}
+
 }  // namespace
 
 std::string describe(const PatternSequence& patterns) {
@@ -142,6 +164,12 @@ std::string table_of(const std::string& method, const std::string& note,
                                       r.truth->off_percent, r.truth->missing_percent)
                         : fmt::format("{:>10}{:>8}{:>10}", "-", "-", "-");
         text += '\n';
+        if (r.ripple && cause_of(*r.ripple) != RippleCause::none) {
+            text += fmt::format(
+                "  phase ripple {:.3f} {:.3f} {:.3f} rad at 1, 2 and N times the phase: {}\n",
+                r.ripple->brightness_rad, r.ripple->steps_rad, r.ripple->gamma_rad,
+                advice_on(cause_of(*r.ripple)));
+        }
     }
     return text;
 }
@@ -165,6 +193,12 @@ std::string json_of(const std::string& method, const std::string& note,
                              {"rms_mm", r.truth->rms_mm},
                              {"off_percent", r.truth->off_percent},
                              {"missing_percent", r.truth->missing_percent}};
+        }
+        if (r.ripple) {
+            frame["ripple"] = {{"brightness_rad", r.ripple->brightness_rad},
+                               {"steps_rad", r.ripple->steps_rad},
+                               {"gamma_rad", r.ripple->gamma_rad},
+                               {"cause", name_of(cause_of(*r.ripple))}};
         }
         frames.push_back(frame);
     }

@@ -8,6 +8,7 @@
 
 #include <xtrack/depth.hpp>
 #include <xtrack/pattern.hpp>
+#include <xtrack/phase_ripple.hpp>
 #include <xtrack/recording.hpp>
 
 namespace xtrack::tools {
@@ -31,6 +32,7 @@ struct DecodeReport {
     double low_mm = 0.0;   ///< 1st percentile
     double high_mm = 0.0;  ///< 99th percentile
     std::optional<TruthReport> truth;
+    std::optional<PhaseRipple> ripple;  ///< of the shortest grey period, where it shows
 };
 
 /// Such as "sine 320 px x3 + sine 32 px x3", in the order of the sequence.

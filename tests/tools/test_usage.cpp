@@ -45,6 +45,9 @@ INSTANTIATE_TEST_SUITE_P(
                 {"decode", "nowhere", "--out", "x", "--min-modulation", "-3"},
                 "min_modulation"},
         Mistake{"unknown_format", {"run", "--events", "xml"}, "--events"},
+        Mistake{"gamma_of_words", {"decode", "nowhere", "--out", "x", "--gamma", "much"}, "'much'"},
+        Mistake{
+            "gamma_out_of_range", {"decode", "nowhere", "--out", "x", "--gamma", "9"}, "0.3 to 4"},
         Mistake{"no_gesture", {"run", "--gestures", ""}, "'' is not known"},
         Mistake{"unknown_preset", {"run", "sim:nix"}, "nix"},
         Mistake{"seed_of_a_folder", {"run", "nowhere", "--seed", "3"}, "only the simulator"},

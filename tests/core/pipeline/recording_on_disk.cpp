@@ -73,6 +73,18 @@ fs::path truth_file(const RecordingOnDisk& recording, const char* kind, int inde
     return recording.folder / "truth" / kind / name;
 }
 
+void read_rig(RecordingOnDisk& recording) {
+    const cv::FileStorage rig((recording.folder / "rig.yaml").string(), cv::FileStorage::READ);
+    recording.rig.camera = read_lens(rig, "camera");
+    recording.rig.projector = read_lens(rig, "projector");
+    read_matrix(rig, "projector_from_camera_R", recording.rig.projector_from_camera_R);
+    read_matrix(rig, "projector_from_camera_T", recording.rig.projector_from_camera_T);
+    if (const cv::FileNode volume = rig["working_volume_mm"]; !volume.empty()) {
+        recording.rig.working_volume =
+            WorkingVolume{static_cast<double>(volume[0]), static_cast<double>(volume[1])};
+    }
+}
+
 }  // namespace
 
 Image<std::uint16_t> RecordingOnDisk::truth_depth(int index) const {
@@ -90,14 +102,8 @@ bool load_recording(const std::string& name, RecordingOnDisk& recording) {
     if (!fs::exists(recording.folder / "frames.csv")) {
         return false;
     }
-    const cv::FileStorage rig((recording.folder / "rig.yaml").string(), cv::FileStorage::READ);
-    recording.rig.camera = read_lens(rig, "camera");
-    recording.rig.projector = read_lens(rig, "projector");
-    read_matrix(rig, "projector_from_camera_R", recording.rig.projector_from_camera_R);
-    read_matrix(rig, "projector_from_camera_T", recording.rig.projector_from_camera_T);
-    if (const cv::FileNode volume = rig["working_volume_mm"]; !volume.empty()) {
-        recording.rig.working_volume =
-            WorkingVolume{static_cast<double>(volume[0]), static_cast<double>(volume[1])};
+    if (fs::exists(recording.folder / "rig.yaml")) {
+        read_rig(recording);
     }
     const cv::FileStorage patterns((recording.folder / "pattern.yaml").string(),
                                    cv::FileStorage::READ);

@@ -18,7 +18,7 @@ struct RecordingOnDisk {
     std::vector<FramePtr> frames;
     std::filesystem::path folder;
 
-    [[nodiscard]] Size size() const { return rig.camera.size; }
+    [[nodiscard]] Size size() const { return frames.front()->size(); }
     /// Truth of a frame; empty image if there is none.
     [[nodiscard]] Image<std::uint16_t> truth_depth(int index) const;
     [[nodiscard]] Image<std::uint8_t> truth_mask(int index) const;

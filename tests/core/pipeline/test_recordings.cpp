@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include <xtrack/depth_decoder.hpp>
+#include <xtrack/phase_ripple.hpp>
 
 #include "tests/core/pipeline/recording_on_disk.hpp"
 
@@ -168,6 +170,73 @@ INSTANTIATE_TEST_SUITE_P(
                     Still{"rendered/static-gray", OrderSource::automatic, 0.5},
                     Still{"rendered/static-three-step", OrderSource::depth_image, 0.45},
                     Still{"rendered/static-dual-gamma22", OrderSource::automatic, 0.8}));
+
+// Of three steps; where the first begins does not matter to gamma.
+const std::vector<double> kPhases_rad{0.0, -2.0943951, -4.1887902};
+
+// Of the shortest period, with the projector's gamma as given.
+PhaseMap phase_of(const test::RecordingOnDisk& recording, std::optional<double> gamma) {
+    test::RecordingOnDisk with = recording;
+    with.patterns.gamma = gamma;
+    DecodeSettings settings;
+    settings.order = OrderSource::none;
+    settings.motion = MotionHandling::off;
+    return decode_all(with, settings).phase();
+}
+
+// The columns from `begin` to `end`.
+PhaseMap part_of(const PhaseMap& map, int begin, int end) {
+    PhaseMap part;
+    part.period_px = map.period_px;
+    part.phase_rad.resize(end - begin, map.phase_rad.height());
+    for (int y = 0; y < part.phase_rad.height(); ++y) {
+        std::copy(map.phase_rad.row(y) + begin, map.phase_rad.row(y) + end, part.phase_rad.row(y));
+    }
+    return part;
+}
+
+struct Wall {
+    const char* name;
+    double ripple_rad;  // before, as published
+};
+class Gammas : public testing::TestWithParam<Wall> {};
+
+// Gamma is learnt from the left half and judged by the right.
+TEST_P(Gammas, AreFoundFromTheFringes) {
+    LOAD_OR_SKIP(GetParam().name, recording);
+    const PhaseMap seen = phase_of(recording, std::nullopt);
+    const int width = seen.phase_rad.width();
+    const auto gamma = estimate_gamma(part_of(seen, 0, width / 2), kPhases_rad);
+    ASSERT_TRUE(gamma) << gamma.error().message;
+    const auto before = measure_ripple(part_of(seen, width / 2, width), 3);
+    const auto after = measure_ripple(part_of(phase_of(recording, *gamma), width / 2, width), 3);
+    ASSERT_TRUE(before && after);
+    std::printf("%s: gamma %.2f, ripple at three times the phase %.3f -> %.3f rad\n",
+                GetParam().name, *gamma, before->gamma_rad, after->gamma_rad);
+    EXPECT_NEAR(before->gamma_rad, GetParam().ripple_rad, 0.2 * GetParam().ripple_rad);
+    EXPECT_LT(after->gamma_rad, before->gamma_rad / 5.0);
+    EXPECT_EQ(cause_of(*before), RippleCause::gamma);
+}
+
+INSTANTIATE_TEST_SUITE_P(Photographs, Gammas,
+                         testing::Values(Wall{"fringe/gamma-wall-a", 0.288},
+                                         Wall{"fringe/gamma-wall-b", 0.096},
+                                         Wall{"fringe/mugs", 0.39}));
+
+// With the gamma that the recording states taken away.
+TEST(GammaOfAHand, IsFoundFromTheFringes) {
+    LOAD_OR_SKIP("rendered/static-dual-gamma22", recording);
+    const auto gamma = estimate_gamma(phase_of(recording, std::nullopt), kPhases_rad);
+    ASSERT_TRUE(gamma) << gamma.error().message;
+    EXPECT_NEAR(*gamma, 2.2, 0.2);
+    recording.patterns.gamma = *gamma;
+    const HandScore score = judge(recording, decode_all(recording, {}).depth(), 0, 2, 15.0);
+    std::printf("static-dual-gamma22 without its gamma: found %.2f, RMS %.2f mm, off %.2f %%\n",
+                *gamma, score.rms_mm, 100.0 * score.off);
+    EXPECT_LE(score.rms_mm, 0.6);
+    EXPECT_LE(score.off, 0.01);
+    EXPECT_LE(score.missing, 0.03);
+}
 
 struct Moving {
     const char* name;
