@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/unwrap/step_maps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/unwrap/spatial_row.hpp"
+
+namespace xtrack {
+namespace {
+
+using Word = StepMaps::Word;
+
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+constexpr int kTopBit = kWordPixels - 1;
+/// Deviations up to this many standard deviations of the noise are sound: 0.3 % are more.
+constexpr double kNoiseSigmas = 3.0;
+/// The median of |x| of a normal distribution, in standard deviations.
+constexpr double kMedianOfNormal = 0.6745;
+/// Deviations below this are sound however clean the image is: surfaces are not planes.
+constexpr float kFloor_rad = 0.3F;
+constexpr int kNoiseRows = 16;
+constexpr int kNoiseSamplesOfRow = 256;
+
+/// A number of 0 ... 4 in each bit position.
+struct Count {
+    Word ones, twos, fours;
+};
+
+Count count(Word a, Word b, Word c, Word d) noexcept {
+    const Word ab = a ^ b, ab2 = a & b;
+    const Word cd = c ^ d, cd2 = c & d;
+    return {ab ^ cd, ab2 ^ cd2 ^ (ab & cd), ab2 & cd2};
+}
+
+float wrapped(float step_rad) noexcept {
+    return std::remainder(step_rad, 2.0F * std::numbers::pi_v<float>);
+}
+
+/// Standard deviation bound of the deviations of sound steps, rad grey levels: phase noise is that
+/// of the camera over the modulation, so their product is one number for the image. The median
+/// hears nothing of steps, however many there are, up to a quarter of the pixels.
+float noise_of(ImageView<const float> phase_rad, ImageView<const float> modulation,
+               std::vector<float>& samples) noexcept {
+    samples.clear();
+    // Along rows, or down a column where rows are too short to tell.
+    const bool along = phase_rad.width >= 6;
+    const int length = along ? phase_rad.width : phase_rad.height;
+    const int lines = along ? phase_rad.height : phase_rad.width;
+    const std::ptrdiff_t phase_next = along ? 1 : phase_rad.stride;
+    const std::ptrdiff_t modulation_next = along ? 1 : modulation.stride;
+    const int line_step = std::max(1, lines / kNoiseRows);
+    const int sample_step = std::max(1, length / kNoiseSamplesOfRow);
+    for (int line = line_step / 2; line < lines; line += line_step) {
+        const float* phase = along ? phase_rad.row(line) : phase_rad.data + line;
+        const float* level = along ? modulation.row(line) : modulation.data + line;
+        for (int i = 2; i + 3 < length && samples.size() < samples.capacity(); i += sample_step) {
+            const auto step = [&](int n) {
+                const float* p = phase + (i + n) * phase_next;
+                return wrapped(p[phase_next] - p[0]);
+            };
+            const float off = step_deviation(step(0), step(-2), step(-1), step(1), step(2));
+            const float weaker = std::min(known_modulation(level[i * modulation_next]),
+                                          known_modulation(level[(i + 1) * modulation_next]));
+            if (off <= std::numeric_limits<float>::max() && weaker > 0.0F) {
+                samples.push_back(off * weaker);
+            }
+        }
+    }
+    if (samples.empty()) {
+        return 0.0F;
+    }
+    const auto middle = samples.begin() + static_cast<std::ptrdiff_t>(samples.size() / 2);
+    std::nth_element(samples.begin(), middle, samples.end());
+    return static_cast<float>(kNoiseSigmas / kMedianOfNormal) * *middle;
+}
+
+}  // namespace
+
+float* StepMaps::Lines::row(int y) noexcept {
+    return values.data() + stride * static_cast<std::size_t>(y % kLines) + kRowMargin;
+}
+
+StepMaps::StepMaps(Size size) : size_(size), words_((size.width + kWordPixels - 1) / kWordPixels) {
+    const std::size_t words = static_cast<std::size_t>(words_);
+    const std::size_t count = words * static_cast<std::size_t>(size.height);
+    for (Map* map : {&valid, &right_up, &right_down, &below_up, &below_down, &right_possible,
+                     &below_possible, &right_sound, &below_sound, &residue}) {
+        map->resize(count);
+    }
+    best_modulation.resize(count);
+    for (Lines* lines : {&phase_rad_, &modulation_, &right_step_rad_, &below_step_rad_}) {
+        lines->stride = words * kWordPixels + 2 * kRowMargin;
+        lines->values.assign(lines->stride * kLines, lines == &modulation_ ? 0.0F : kNone);
+    }
+    bad_loops_.resize(2 * words);
+    samples_.reserve(static_cast<std::size_t>(2 * kNoiseRows * 2 * kNoiseSamplesOfRow));
+}
+
+void StepMaps::make(ImageView<const float> phase_rad, ImageView<const float> modulation,
+                    float limit_rad) noexcept {
+    const float noise = noise_of(phase_rad, modulation, samples_);
+    // Judging a row needs the steps of two rows above and two below, and these the phase of one
+    // more.
+    std::fill_n(below_step_rad_.row(kLines - 2), size_.width, kNone);
+    std::fill_n(below_step_rad_.row(kLines - 1), size_.width, kNone);
+    for (int y = -3; y < size_.height; ++y) {
+        take(y + 3, phase_rad, modulation);
+        if (y + 2 >= 0) {
+            step(y + 2);
+        }
+        if (y >= 0) {
+            judge(y, limit_rad, noise);
+        }
+    }
+    cut_residues();
+}
+
+void StepMaps::take(int y, ImageView<const float> phase_rad,
+                    ImageView<const float> modulation) noexcept {
+    if (y >= size_.height) {
+        std::fill_n(phase_rad_.row(y), size_.width, kNone);
+        std::fill_n(modulation_.row(y), size_.width, 0.0F);
+        return;
+    }
+    TakeRow row;
+    row.count = size_.width;
+    row.phase_rad = phase_rad.row(y);
+    row.modulation = modulation.row(y);
+    row.padded_phase_rad = phase_rad_.row(y);
+    row.padded_modulation = modulation_.row(y);
+    row.best_modulation = &best_modulation[at(0, y)];
+    take_row(row);
+}
+
+void StepMaps::step(int y) noexcept {
+    if (y >= size_.height) {
+        std::fill_n(below_step_rad_.row(y), size_.width, kNone);
+        return;
+    }
+    const std::size_t i = at(0, y);
+    StepRow row;
+    row.words = words_;
+    row.phase_rad = phase_rad_.row(y);
+    row.below_rad = phase_rad_.row(y + 1);
+    row.right_step_rad = right_step_rad_.row(y);
+    row.below_step_rad = below_step_rad_.row(y);
+    row.valid = &valid[i];
+    row.right_up = &right_up[i];
+    row.right_down = &right_down[i];
+    row.below_up = &below_up[i];
+    row.below_down = &below_down[i];
+    step_row(row);
+}
+
+void StepMaps::judge(int y, float limit_rad, float noise) noexcept {
+    const std::size_t i = at(0, y);
+    JudgeRow row;
+    row.words = words_;
+    row.limit_rad = limit_rad;
+    row.noise = noise;
+    row.floor_rad = kFloor_rad;
+    row.step_rad = right_step_rad_.row(y);
+    row.beside_rad = {row.step_rad - 2, row.step_rad - 1, row.step_rad + 1, row.step_rad + 2};
+    row.modulation = modulation_.row(y);
+    row.other_modulation = row.modulation + 1;
+    row.possible = &right_possible[i];
+    row.sound = &right_sound[i];
+    judge_row(row);
+    row.step_rad = below_step_rad_.row(y);
+    row.beside_rad = {below_step_rad_.row(y + kLines - 2), below_step_rad_.row(y + kLines - 1),
+                      below_step_rad_.row(y + 1), below_step_rad_.row(y + 2)};
+    row.other_modulation = modulation_.row(y + 1);
+    row.possible = &below_possible[i];
+    row.sound = &below_sound[i];
+    judge_row(row);
+}
+
+/// Finds the residues, and takes soundness from the four steps of a loop that is all sound and yet
+/// does not close: one of them is wrong, and which one is not known.
+void StepMaps::cut_residues() noexcept {
+    Word* const bad_above = bad_loops_.data();
+    Word* const bad = bad_above + words_;
+    std::fill(bad_loops_.begin(), bad_loops_.end(), 0);
+    for (int y = 0; y < size_.height; ++y) {
+        const bool last = y + 1 == size_.height;
+        for (int c = 0; c < words_; ++c) {
+            const std::size_t i = at(c, y);
+            const std::size_t below = last ? i : at(c, y + 1);
+            // The step down that starts one pixel to the right.
+            const auto right_of = [&](const Map& map) {
+                return map[i] >> 1U | (c + 1 < words_ ? map[i + 1] << kTopBit : 0);
+            };
+            const Count up =
+                count(right_up[i], right_of(below_up), right_down[below], below_down[i]);
+            const Count down =
+                count(right_down[i], right_of(below_down), right_up[below], below_up[i]);
+            residue[i] = (up.ones ^ down.ones) | (up.twos ^ down.twos) | (up.fours ^ down.fours);
+            // In the last row no step downward is sound.
+            bad[c] = residue[i] & right_sound[i] & right_sound[below] & below_sound[i] &
+                     right_of(below_sound);
+        }
+        for (int c = 0; c < words_; ++c) {
+            const std::size_t i = at(c, y);
+            right_sound[i] &= ~(bad[c] | bad_above[c]);
+            below_sound[i] &= ~(bad[c] | bad[c] << 1U | (c > 0 ? bad[c - 1] >> kTopBit : 0));
+        }
+        std::copy_n(bad, words_, bad_above);
+    }
+}
+
+}  // namespace xtrack
