@@ -2,8 +2,10 @@
 #include "core/unwrap/region_links.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <limits>
+#include <numeric>
 #include <tuple>
 
 namespace xtrack {
@@ -24,6 +26,21 @@ bool is_clear(const RegionLink& link) noexcept {
     return link.votes >= kClearVotes && is_supported(link, kClearSupport);
 }
 
+/// What two surfaces joined on so many votes must agree on at least: while much is certain, nothing
+/// else is taken.
+double usual_support(std::uint32_t votes) noexcept {
+    return votes >= kClearVotes ? kClearSupport : (votes >= kFairVotes ? kFairSupport : 0.0);
+}
+
+/// 0 for the most votes, kRanks - 1 for none. The leading bits of the number are its class.
+constexpr std::uint32_t kRanks = 256;
+std::uint32_t rank_of(std::uint32_t votes) noexcept {
+    constexpr int kExactBits = 4;
+    const int shift = std::max(static_cast<int>(std::bit_width(votes)) - kExactBits, 0);
+    return kRanks - 1 -
+           ((static_cast<std::uint32_t>(shift) << (kExactBits - 1)) + (votes >> shift));
+}
+
 std::size_t hash(const RegionLink& link) noexcept {
     // Multiplicative hashing of both nodes; the order is left out, so that one hash serves both
     // kinds of sameness.
@@ -39,18 +56,17 @@ bool same_link(const RegionLink& x, const RegionLink& y) noexcept {
     return same_regions(x, y) && x.order == y.order;
 }
 
-/// @return the link between the roots, the lesser one first; a == b where they are one set
-RegionLink between_roots(OrderForest& forest, RegionLink link) noexcept {
+/// Moves the link to the roots, the lesser one first.
+/// @return whether they are two. In place: a copy of what was just written would wait for it.
+bool move_to_roots(OrderForest& forest, RegionLink& link) noexcept {
     const OrderForest::Place a = forest.find(link.a);
     const OrderForest::Place b = forest.find(link.b);
-    link.order += a.order - b.order;
-    link.a = a.root;
-    link.b = b.root;
-    if (link.a > link.b) {
-        std::swap(link.a, link.b);
-        link.order = -link.order;
-    }
-    return link;
+    const std::int32_t order = link.order + a.order - b.order;
+    const bool swap = a.root > b.root;
+    link.a = swap ? b.root : a.root;
+    link.b = swap ? a.root : b.root;
+    link.order = swap ? -order : order;
+    return a.root != b.root;
 }
 
 void count_in(RegionLink& sum, const RegionLink& link) noexcept {
@@ -60,58 +76,60 @@ void count_in(RegionLink& sum, const RegionLink& link) noexcept {
 
 }  // namespace
 
-/// What a round may join: the strongest bonds first, and doubtful ones only when all clear ones
-/// have been taken and counted.
-struct RegionLinks::Level {
-    std::uint32_t min_votes;
-    double support;
-};
-
 void RegionLinks::reserve(std::size_t count) {
     links_.reserve(count);
     pairs_.reserve(count);
+    ranked_.reserve(count);
     table_.reserve(std::bit_ceil(2 * count + 1));
 }
 
-void RegionLinks::add(OrderForest& forest, RegionLink link) {
-    link = between_roots(forest, link);
-    if (link.a == link.b) {
+void RegionLinks::add(OrderForest& forest, RegionLink& link) {
+    if (!move_to_roots(forest, link)) {
         return;
     }
-    if (is_clear(link)) {
-        forest.join(link.a, link.b, link.order);
-    } else if (!links_.empty() && same_link(links_.back(), link)) {
-        // Contacts come along borders, so most are with the same two regions as the one before.
+    // Contacts come along borders, so most are with the same two regions as the one before.
+    if (!links_.empty() && same_link(links_.back(), link)) {
         count_in(links_.back(), link);
     } else {
         links_.push_back(link);
     }
 }
 
+void RegionLinks::join(OrderForest& forest, RegionLink& link) noexcept {
+    if (move_to_roots(forest, link)) {
+        forest.join(link.a, link.b, link.order);
+    }
+}
+
 void RegionLinks::join_all(OrderForest& forest, double support) {
-    for (const Level& level :
-         {Level{kClearVotes, std::max(support, kClearSupport)},
-          Level{kFairVotes, std::max(support, kFairSupport)}, Level{1, support}}) {
-        while (join_round(forest, level)) {
+    count_anew(forest);
+    std::uint32_t min_votes = pairs_.empty() ? 0 : pairs_.front().votes;
+    bool joined = min_votes > 0;
+    while (min_votes > 1 || joined) {
+        min_votes = std::max(min_votes / (min_votes > kClearVotes ? 2U : 4U), 1U);
+        joined = join_ranked(forest, min_votes, std::max(support, usual_support(min_votes)));
+        if (joined) {
+            count_anew(forest);
         }
     }
 }
 
-bool RegionLinks::join_round(OrderForest& forest, const Level& level) {
-    resolve(forest);
-    rank(level.min_votes);
+/// @return whether regions have changed
+bool RegionLinks::join_ranked(OrderForest& forest, std::uint32_t min_votes, double support) {
     bool joined = false;
     for (const RegionLink& pair : pairs_) {
-        const RegionLink now = between_roots(forest, pair);
-        if (now.a == now.b) {
+        if (pair.votes < min_votes) {
+            break;
+        }
+        RegionLink now = pair;
+        if (!move_to_roots(forest, now)) {
             continue;
         }
         const bool surfaces =
             forest.pixels(now.a) >= kFragmentPixels && forest.pixels(now.b) >= kFragmentPixels;
         // What was counted before one of them was joined to something else says little of the
-        // whole, unless it is much: the rest waits for the next round.
-        const bool enough =
-            same_regions(now, pair) ? is_supported(pair, level.support) : is_clear(pair);
+        // whole, unless it is much: the rest waits until it has been counted anew.
+        const bool enough = same_regions(now, pair) ? is_supported(pair, support) : is_clear(pair);
         if (surfaces && !enough) {
             continue;
         }
@@ -121,27 +139,23 @@ bool RegionLinks::join_round(OrderForest& forest, const Level& level) {
     return joined;
 }
 
-/// Moves the links to the present roots, drops those within one set, and counts equal ones as one.
-void RegionLinks::resolve(OrderForest& forest) {
+/// Moves the links to the present roots, drops those within one set, counts equal ones as one, and
+/// ranks the pairs of regions by the votes of the order that has most of them.
+void RegionLinks::count_anew(OrderForest& forest) {
     std::size_t kept = 0;
-    for (const RegionLink& link : links_) {
-        const RegionLink now = between_roots(forest, link);
-        if (now.a == now.b) {
+    for (RegionLink& link : links_) {
+        if (!move_to_roots(forest, link)) {
             continue;
         }
-        if (kept > 0 && same_link(links_[kept - 1], now)) {
-            count_in(links_[kept - 1], now);
+        if (kept > 0 && same_link(links_[kept - 1], link)) {
+            count_in(links_[kept - 1], link);
         } else {
-            links_[kept++] = now;
+            links_[kept++] = link;
         }
     }
     links_.resize(kept);
     gather(links_, pairs_, same_link, count_in);
     links_.swap(pairs_);
-}
-
-/// Of each two regions the order with the most votes, with their whole contact; most votes first.
-void RegionLinks::rank(std::uint32_t min_votes) {
     gather(links_, pairs_, same_regions, [](RegionLink& best, const RegionLink& link) {
         if (std::tie(link.votes, best.order) > std::tie(best.votes, link.order)) {
             best.votes = link.votes;
@@ -149,10 +163,21 @@ void RegionLinks::rank(std::uint32_t min_votes) {
         }
         best.contact += link.contact;
     });
-    std::erase_if(pairs_, [&](const RegionLink& pair) { return pair.votes < min_votes; });
-    std::sort(pairs_.begin(), pairs_.end(), [](const RegionLink& x, const RegionLink& y) {
-        return std::tie(y.votes, x.a, x.b) < std::tie(x.votes, y.a, y.b);
-    });
+    rank();
+}
+
+/// Sorts the pairs by votes, most first; exact for few votes, by classes of an eighth for many.
+void RegionLinks::rank() {
+    std::array<std::uint32_t, kRanks + 1> begin{};
+    for (const RegionLink& pair : pairs_) {
+        ++begin[rank_of(pair.votes) + 1];
+    }
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    ranked_.resize(pairs_.size());
+    for (const RegionLink& pair : pairs_) {
+        ranked_[begin[rank_of(pair.votes)]++] = pair;
+    }
+    ranked_.swap(pairs_);
 }
 
 template <typename Same, typename Merge>

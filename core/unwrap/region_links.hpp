@@ -32,25 +32,28 @@ class RegionLinks {
     void reserve(std::size_t count);
     void clear() noexcept { links_.clear(); }
 
-    /// Adds a contact. One that is clear by itself, wide and nearly all sound, joins at once; one
-    /// within a set says nothing any more.
-    void add(OrderForest& forest, RegionLink link);
+    /// Adds a contact; one within a set says nothing any more.
+    /// @param link is moved to the roots of its sets
+    void add(OrderForest& forest, RegionLink& link);
+
+    /// Joins two nodes at once, for a contact beyond doubt, unless they are one set already.
+    static void join(OrderForest& forest, RegionLink& link) noexcept;
 
     /// Joins until nothing more can be. Two regions that could each stand alone are joined where
     /// `support` of their contact, 0 ... 1, agrees; a fragment is joined to what it fits best.
     void join_all(OrderForest& forest, double support);
 
  private:
-    struct Level;
-    bool join_round(OrderForest& forest, const Level& level);
-    void resolve(OrderForest& forest);
-    void rank(std::uint32_t min_votes);
+    bool join_ranked(OrderForest& forest, std::uint32_t min_votes, double support);
+    void count_anew(OrderForest& forest);
+    void rank();
     template <typename Same, typename Merge>
     void gather(const std::vector<RegionLink>& from, std::vector<RegionLink>& into, Same same,
                 Merge merge);
 
     std::vector<RegionLink> links_;
     std::vector<RegionLink> pairs_;
+    std::vector<RegionLink> ranked_;
     std::vector<std::uint32_t> table_;
 };
 

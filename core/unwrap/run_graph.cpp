@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/unwrap/run_graph.hpp"
 
+#include <algorithm>
 #include <bit>
 
 #include "core/unwrap/spatial_row.hpp"
@@ -10,7 +11,10 @@ namespace {
 
 using Word = StepMaps::Word;
 
-std::uint32_t bits(Word word) noexcept { return static_cast<std::uint32_t>(std::popcount(word)); }
+/// A contact this wide of which this share is sound, and of what lies beside it, is no accident.
+constexpr int kClearPixels = 8;
+constexpr double kClearShare = 0.9;
+constexpr double kClearShareBeside = 0.75;
 
 }  // namespace
 
@@ -98,11 +102,17 @@ void RunGraph::link_right(const StepMaps& maps, std::uint32_t a, std::uint32_t b
 void RunGraph::link_down(const StepMaps& maps, int word, int y) {
     const Range above = runs_of(word, y);
     const Range below = runs_of(word, y + 1);
+    int contact = 0, sound = 0;
+    for (int near = std::max(word - 1, 0); near <= std::min(word + 1, maps.words() - 1); ++near) {
+        contact += maps.below_contact[maps.at(near, y)].pixels;
+        sound += maps.below_contact[maps.at(near, y)].sound;
+    }
+    const bool clear = sound >= kClearShareBeside * contact;
     std::uint32_t a = above.begin;
     std::uint32_t b = below.begin;
     while (a < above.end && b < below.end) {
         if ((runs_[a].mask() & runs_[b].mask()) != 0) {
-            link_contact(maps, a, b, maps.at(word, y));
+            link_contact(maps, a, b, maps.at(word, y), clear);
         }
         const bool a_ends = runs_[a].last <= runs_[b].last;
         const bool b_ends = runs_[b].last <= runs_[a].last;
@@ -112,8 +122,9 @@ void RunGraph::link_down(const StepMaps& maps, int word, int y) {
 }
 
 /// @param at the word of the upper run
+/// @param clear whether the rows touch without a doubt here, as far as can be seen
 void RunGraph::link_contact(const StepMaps& maps, std::uint32_t upper, std::uint32_t lower,
-                            std::size_t at) {
+                            std::size_t at, bool clear) {
     const std::size_t at_below = at + static_cast<std::size_t>(maps.words());
     Word rest = runs_[upper].mask() & runs_[lower].mask();
     // Within the contact the order changes at residues only, for both runs are whole.
@@ -130,11 +141,16 @@ void RunGraph::link_contact(const StepMaps& maps, std::uint32_t upper, std::uint
         link.order = maps.rise_along(at, runs_[upper].mask() & to_first) +
                      maps.rise_below(at, down) -
                      maps.rise_along(at_below, runs_[lower].mask() & to_first);
-        const std::uint32_t sound = bits(maps.below_sound[at] & piece);
-        const std::uint32_t possible = bits(maps.below_possible[at] & piece);
-        link.votes = kSoundVotes * sound + kPossibleVotes * (possible - sound);
-        link.contact = bits(piece);
-        links_.add(forest_, link);
+        const int sound = count_bits(maps.below_sound[at] & piece);
+        const int possible = count_bits(maps.below_possible[at] & piece);
+        link.votes = kSoundVotes * static_cast<std::uint32_t>(sound) +
+                     kPossibleVotes * static_cast<std::uint32_t>(possible - sound);
+        link.contact = static_cast<std::uint32_t>(count_bits(piece));
+        if (clear && sound >= kClearPixels && sound >= kClearShare * link.contact) {
+            RegionLinks::join(forest_, link);
+        } else {
+            links_.add(forest_, link);
+        }
     }
 }
 

@@ -59,7 +59,7 @@ class RunGraph {
     void link_along(const StepMaps& maps, int word, int y);
     void link_down(const StepMaps& maps, int word, int y);
     void link_contact(const StepMaps& maps, std::uint32_t upper, std::uint32_t lower,
-                      std::size_t at);
+                      std::size_t at, bool clear);
 
     Size size_;
     std::vector<Run> runs_;

@@ -174,6 +174,15 @@ void SpatialUnwrapper::Impl::take_seed(std::uint32_t index, int word, int y,
     }
 }
 
+/// Whole chunks, past the end: what comes next overwrites the rest, and short pieces of known
+/// length are much faster than exact ones.
+inline void SpatialUnwrapper::Impl::put(int begin, int end, float add_rad, std::uint16_t id) {
+    for (int x = begin; x < end; x += kChunk) {
+        std::fill_n(add_rad_.data() + x, kChunk, add_rad);
+        std::fill_n(ids_.data() + x, kChunk, id);
+    }
+}
+
 void SpatialUnwrapper::Impl::write_row(int y, const float* phase_rad, float* unwrapped_rad,
                                        std::uint16_t* component) {
     int done = 0;
@@ -207,15 +216,6 @@ void SpatialUnwrapper::Impl::write_row(int y, const float* phase_rad, float* unw
         unwrapped_rad[x] = phase_rad[x] + add_rad_[static_cast<std::size_t>(x)];
     }
     std::copy_n(ids_.data(), size_.width, component);
-}
-
-/// Whole chunks, past the end: what comes next overwrites the rest, and short pieces of known
-/// length are much faster than exact ones.
-void SpatialUnwrapper::Impl::put(int begin, int end, float add_rad, std::uint16_t id) {
-    for (int x = begin; x < end; x += kChunk) {
-        std::fill_n(add_rad_.data() + x, kChunk, add_rad);
-        std::fill_n(ids_.data() + x, kChunk, id);
-    }
 }
 
 Result<void> validate(const SpatialUnwrapSettings& settings) {

@@ -22,7 +22,7 @@ constexpr double kMedianOfNormal = 0.6745;
 /// Deviations below this are sound however clean the image is: surfaces are not planes.
 constexpr float kFloor_rad = 0.3F;
 constexpr int kNoiseRows = 16;
-constexpr int kNoiseSamplesOfRow = 256;
+constexpr int kNoiseSamplesOfRow = 128;
 
 /// A number of 0 ... 4 in each bit position.
 struct Count {
@@ -35,8 +35,15 @@ Count count(Word a, Word b, Word c, Word d) noexcept {
     return {ab ^ cd, ab2 ^ cd2 ^ (ab & cd), ab2 & cd2};
 }
 
-float wrapped(float step_rad) noexcept {
-    return std::remainder(step_rad, 2.0F * std::numbers::pi_v<float>);
+/// Wrapped difference of two phases, NaN where either is none.
+float step_between(float from_rad, float to_rad) noexcept {
+    constexpr float kPi = std::numbers::pi_v<float>;
+    const float step_rad = to_rad - from_rad;
+    const bool valid = std::fabs(from_rad) <= kPi && std::fabs(to_rad) <= kPi;
+    return !valid            ? kNone
+           : step_rad > kPi  ? step_rad - 2.0F * kPi
+           : step_rad < -kPi ? step_rad + 2.0F * kPi
+                             : step_rad;
 }
 
 /// Standard deviation bound of the deviations of sound steps, rad grey levels: phase noise is that
@@ -59,7 +66,7 @@ float noise_of(ImageView<const float> phase_rad, ImageView<const float> modulati
         for (int i = 2; i + 3 < length && samples.size() < samples.capacity(); i += sample_step) {
             const auto step = [&](int n) {
                 const float* p = phase + (i + n) * phase_next;
-                return wrapped(p[phase_next] - p[0]);
+                return step_between(p[0], p[phase_next]);
             };
             const float off = step_deviation(step(0), step(-2), step(-1), step(1), step(2));
             const float weaker = std::min(known_modulation(level[i * modulation_next]),
@@ -90,6 +97,7 @@ StepMaps::StepMaps(Size size) : size_(size), words_((size.width + kWordPixels - 
                      &below_possible, &right_sound, &below_sound, &residue}) {
         map->resize(count);
     }
+    below_contact.resize(count);
     best_modulation.resize(count);
     for (Lines* lines : {&phase_rad_, &modulation_, &right_step_rad_, &below_step_rad_}) {
         lines->stride = words * kWordPixels + 2 * kRowMargin;
@@ -206,6 +214,9 @@ void StepMaps::cut_residues() noexcept {
             const std::size_t i = at(c, y);
             right_sound[i] &= ~(bad[c] | bad_above[c]);
             below_sound[i] &= ~(bad[c] | bad[c] << 1U | (c > 0 ? bad[c - 1] >> kTopBit : 0));
+            const Word contact = last ? 0 : valid[i] & valid[i + static_cast<std::size_t>(words_)];
+            below_contact[i] = {static_cast<std::uint8_t>(count_bits(contact)),
+                                static_cast<std::uint8_t>(count_bits(below_sound[i]))};
         }
         std::copy_n(bad, words_, bad_above);
     }

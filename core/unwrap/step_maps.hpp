@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -13,6 +12,15 @@ namespace xtrack {
 /// Bits 0 ... n - 1. @pre 0 <= n < 64
 [[nodiscard]] constexpr std::uint64_t bits_below(int n) noexcept {
     return (std::uint64_t{1} << n) - 1U;
+}
+
+/// How many bits are set. std::popcount() is a call into a table where the compiler may not assume
+/// the instruction, which an x86-64 library for every CPU may not.
+[[nodiscard]] constexpr int count_bits(std::uint64_t word) noexcept {
+    word -= word >> 1U & 0x5555555555555555U;
+    word = (word & 0x3333333333333333U) + (word >> 2U & 0x3333333333333333U);
+    word = (word + (word >> 4U)) & 0x0F0F0F0F0F0F0F0FU;
+    return static_cast<int>(word * 0x0101010101010101U >> 56U);
 }
 
 /// What is known of the steps between the neighbours of a wrapped phase image, a bit a pixel: 64
@@ -39,10 +47,10 @@ class StepMaps {
 
     /// Change of the order over the marked steps to the right of one word.
     [[nodiscard]] std::int32_t rise_along(std::size_t i, Word steps) const noexcept {
-        return std::popcount(right_up[i] & steps) - std::popcount(right_down[i] & steps);
+        return count_bits(right_up[i] & steps) - count_bits(right_down[i] & steps);
     }
     [[nodiscard]] std::int32_t rise_below(std::size_t i, Word steps) const noexcept {
-        return std::popcount(below_up[i] & steps) - std::popcount(below_down[i] & steps);
+        return count_bits(below_up[i] & steps) - count_bits(below_down[i] & steps);
     }
 
     Map valid;                           ///< pixels with a phase
@@ -51,6 +59,12 @@ class StepMaps {
     Map right_possible, below_possible;  ///< steps within the limit
     Map right_sound, below_sound;        ///< within the noise, and in no residue
     Map residue;                         ///< the loop right, down, left, up does not close
+    /// Of a word: pixels that have one below them, and how many steps to these are sound.
+    struct Contact {
+        std::uint8_t pixels = 0;
+        std::uint8_t sound = 0;
+    };
+    std::vector<Contact> below_contact;
     std::vector<float> best_modulation;  ///< highest of each word's valid pixels
 
  private:
