@@ -11,7 +11,9 @@ namespace {
 
 using Word = StepMaps::Word;
 
-/// A contact this wide of which this share is sound, and of what lies beside it, is no accident.
+/// A contact this wide is beyond doubt if nearly all of it is sound and most of what lies beside it
+/// as well: where the step at a depth edge passes through a whole turn, a stretch of it looks
+/// sound.
 constexpr int kClearPixels = 8;
 constexpr double kClearShare = 0.9;
 constexpr double kClearShareBeside = 0.75;

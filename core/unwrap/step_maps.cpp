@@ -22,7 +22,7 @@ constexpr double kMedianOfNormal = 0.6745;
 /// Deviations below this are sound however clean the image is: surfaces are not planes.
 constexpr float kFloor_rad = 0.3F;
 constexpr int kNoiseRows = 16;
-constexpr int kNoiseSamplesOfRow = 128;
+constexpr int kNoiseSamplesOfRow = 64;
 
 /// A number of 0 ... 4 in each bit position.
 struct Count {
