@@ -21,15 +21,19 @@ bool is_supported(const RegionLink& link, double support) noexcept {
     return static_cast<double>(link.votes) >= support * kSoundVotes * link.contact;
 }
 
-/// Speaks for itself, whatever else there is.
-bool is_clear(const RegionLink& link) noexcept {
-    return link.votes >= kClearVotes && is_supported(link, kClearSupport);
+/// Speaks for itself, even if its regions have grown since it was counted: nearly all of it agrees,
+/// and it is as long as a side of the lesser region, so that there is not much else to count.
+bool is_clear(const RegionLink& link, std::uint32_t lesser_pixels) noexcept {
+    return link.votes >= kClearVotes && is_supported(link, kClearSupport) &&
+           std::uint64_t{link.contact} * link.contact >= lesser_pixels;
 }
 
 /// What two surfaces joined on so many votes must agree on at least: while much is certain, nothing
-/// else is taken.
+/// else is taken, and on a few votes fragments alone are joined.
 double usual_support(std::uint32_t votes) noexcept {
-    return votes >= kClearVotes ? kClearSupport : (votes >= kFairVotes ? kFairSupport : 0.0);
+    return votes >= kClearVotes  ? kClearSupport
+           : votes >= kFairVotes ? kFairSupport
+                                 : std::numeric_limits<double>::infinity();
 }
 
 /// 0 for the most votes, kRanks - 1 for none. The leading bits of the number are its class.
@@ -108,6 +112,11 @@ void RegionLinks::join_all(OrderForest& forest, double support) {
     while (min_votes > 1 || joined) {
         min_votes = std::max(min_votes / (min_votes > kClearVotes ? 2U : 4U), 1U);
         joined = join_ranked(forest, min_votes, std::max(support, usual_support(min_votes)));
+        // Surfaces part by noise touch in a few places until the fragments between them have been
+        // shared out, so they come last.
+        if (!joined && min_votes == 1) {
+            joined = join_ranked(forest, min_votes, support);
+        }
         if (joined) {
             count_anew(forest);
         }
@@ -125,11 +134,12 @@ bool RegionLinks::join_ranked(OrderForest& forest, std::uint32_t min_votes, doub
         if (!move_to_roots(forest, now)) {
             continue;
         }
-        const bool surfaces =
-            forest.pixels(now.a) >= kFragmentPixels && forest.pixels(now.b) >= kFragmentPixels;
+        const std::uint32_t lesser_pixels = std::min(forest.pixels(now.a), forest.pixels(now.b));
+        const bool surfaces = lesser_pixels >= kFragmentPixels;
         // What was counted before one of them was joined to something else says little of the
         // whole, unless it is much: the rest waits until it has been counted anew.
-        const bool enough = same_regions(now, pair) ? is_supported(pair, support) : is_clear(pair);
+        const bool enough =
+            same_regions(now, pair) ? is_supported(pair, support) : is_clear(pair, lesser_pixels);
         if (surfaces && !enough) {
             continue;
         }

@@ -86,7 +86,8 @@ void judge_row_scalar(const JudgeRow& row) noexcept {
             const float weaker = std::min(row.modulation[x], row.other_modulation[x]);
             const bool within = off <= row.limit_rad;
             possible |= bit_if(within, x);
-            sound |= bit_if(within && (off <= row.floor_rad || off * weaker <= row.noise), x);
+            const bool quiet = off <= row.sound_limit_rad && off * weaker <= row.noise;
+            sound |= bit_if(within && (off <= row.floor_rad || quiet), x);
         }
         row.possible[word] = possible;
         row.sound[word] = sound;

@@ -56,8 +56,9 @@ struct JudgeRow {
     const float* modulation = nullptr;        ///< of each step's first pixel, padded
     const float* other_modulation = nullptr;  ///< of each step's second pixel, padded
     float limit_rad = 0.0F;                   ///< more: not possible
-    float noise = 0.0F;      ///< rad grey levels: more than noise / modulation is not sound ...
-    float floor_rad = 0.0F;  ///< ... unless it is less than this
+    float noise = 0.0F;            ///< rad grey levels: more than noise / modulation is not sound
+    float sound_limit_rad = 0.0F;  ///< nor is more than this, however faint the fringe is
+    float floor_rad = 0.0F;        ///< less is sound in any case
     std::uint64_t* possible = nullptr;  ///< out: within the limit
     std::uint64_t* sound = nullptr;     ///< out: within the limit, and within the noise as well
 };

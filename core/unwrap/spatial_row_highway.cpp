@@ -124,6 +124,7 @@ void judge(const JudgeRow& row) {
     const V limit = hn::Set(d, row.limit_rad);
     const V noise = hn::Set(d, row.noise);
     const V floor = hn::Set(d, row.floor_rad);
+    const V sound_limit = hn::Set(d, row.sound_limit_rad);
     for (int word = 0; word < row.words; ++word) {
         std::uint64_t possible = 0, sound = 0;
         for (int lane = 0; lane < kWordPixels; lane += lanes) {
@@ -135,7 +136,8 @@ void judge(const JudgeRow& row) {
             const V weaker =
                 hn::Min(hn::LoadU(d, row.modulation + x), hn::LoadU(d, row.other_modulation + x));
             const M within = hn::Le(off, limit);
-            const M usual = hn::Or(hn::Le(off, floor), hn::Le(hn::Mul(off, weaker), noise));
+            const M quiet = hn::And(hn::Le(off, sound_limit), hn::Le(hn::Mul(off, weaker), noise));
+            const M usual = hn::Or(hn::Le(off, floor), quiet);
             possible |= bits_at(within, lane);
             sound |= bits_at(hn::And(within, usual), lane);
         }

@@ -21,6 +21,8 @@ constexpr double kNoiseSigmas = 3.0;
 constexpr double kMedianOfNormal = 0.6745;
 /// Deviations below this are sound however clean the image is: surfaces are not planes.
 constexpr float kFloor_rad = 0.3F;
+/// What is faint beside the rest of the image may deviate this much more than the rest does.
+constexpr float kMostOfUsual = 2.0F;
 constexpr int kNoiseRows = 16;
 constexpr int kNoiseSamplesOfRow = 64;
 
@@ -46,12 +48,23 @@ float step_between(float from_rad, float to_rad) noexcept {
                              : step_rad;
 }
 
-/// Standard deviation bound of the deviations of sound steps, rad grey levels: phase noise is that
-/// of the camera over the modulation, so their product is one number for the image. The median
-/// hears nothing of steps, however many there are, up to a quarter of the pixels.
-float noise_of(ImageView<const float> phase_rad, ImageView<const float> modulation,
-               std::vector<float>& samples) noexcept {
-    samples.clear();
+float median(std::vector<float>& values) noexcept {
+    if (values.empty()) {
+        return 0.0F;
+    }
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+}  // namespace
+
+/// Phase noise is that of the camera over the modulation, so the product of deviation and
+/// modulation is one number for the image. The median hears nothing of steps, however large.
+StepMaps::Noise StepMaps::measure_noise(ImageView<const float> phase_rad,
+                                        ImageView<const float> modulation) noexcept {
+    deviations_.clear();
+    products_.clear();
     // Along rows, or down a column where rows are too short to tell.
     const bool along = phase_rad.width >= 6;
     const int length = along ? phase_rad.width : phase_rad.height;
@@ -63,7 +76,8 @@ float noise_of(ImageView<const float> phase_rad, ImageView<const float> modulati
     for (int line = line_step / 2; line < lines; line += line_step) {
         const float* phase = along ? phase_rad.row(line) : phase_rad.data + line;
         const float* level = along ? modulation.row(line) : modulation.data + line;
-        for (int i = 2; i + 3 < length && samples.size() < samples.capacity(); i += sample_step) {
+        for (int i = 2; i + 3 < length && products_.size() < products_.capacity();
+             i += sample_step) {
             const auto step = [&](int n) {
                 const float* p = phase + (i + n) * phase_next;
                 return step_between(p[0], p[phase_next]);
@@ -72,19 +86,14 @@ float noise_of(ImageView<const float> phase_rad, ImageView<const float> modulati
             const float weaker = std::min(known_modulation(level[i * modulation_next]),
                                           known_modulation(level[(i + 1) * modulation_next]));
             if (off <= std::numeric_limits<float>::max() && weaker > 0.0F) {
-                samples.push_back(off * weaker);
+                deviations_.push_back(off);
+                products_.push_back(off * weaker);
             }
         }
     }
-    if (samples.empty()) {
-        return 0.0F;
-    }
-    const auto middle = samples.begin() + static_cast<std::ptrdiff_t>(samples.size() / 2);
-    std::nth_element(samples.begin(), middle, samples.end());
-    return static_cast<float>(kNoiseSigmas / kMedianOfNormal) * *middle;
+    constexpr auto kOfMedian = static_cast<float>(kNoiseSigmas / kMedianOfNormal);
+    return {kOfMedian * median(products_), kMostOfUsual * kOfMedian * median(deviations_)};
 }
-
-}  // namespace
 
 float* StepMaps::Lines::row(int y) noexcept {
     return values.data() + stride * static_cast<std::size_t>(y % kLines) + kRowMargin;
@@ -104,12 +113,14 @@ StepMaps::StepMaps(Size size) : size_(size), words_((size.width + kWordPixels - 
         lines->values.assign(lines->stride * kLines, lines == &modulation_ ? 0.0F : kNone);
     }
     bad_loops_.resize(2 * words);
-    samples_.reserve(static_cast<std::size_t>(2 * kNoiseRows * 2 * kNoiseSamplesOfRow));
+    const auto samples = static_cast<std::size_t>(2 * kNoiseRows * 2 * kNoiseSamplesOfRow);
+    deviations_.reserve(samples);
+    products_.reserve(samples);
 }
 
 void StepMaps::make(ImageView<const float> phase_rad, ImageView<const float> modulation,
                     float limit_rad) noexcept {
-    const float noise = noise_of(phase_rad, modulation, samples_);
+    const Noise noise = measure_noise(phase_rad, modulation);
     // Judging a row needs the steps of two rows above and two below, and these the phase of one
     // more.
     std::fill_n(below_step_rad_.row(kLines - 2), size_.width, kNone);
@@ -163,12 +174,13 @@ void StepMaps::step(int y) noexcept {
     step_row(row);
 }
 
-void StepMaps::judge(int y, float limit_rad, float noise) noexcept {
+void StepMaps::judge(int y, float limit_rad, const Noise& noise) noexcept {
     const std::size_t i = at(0, y);
     JudgeRow row;
     row.words = words_;
     row.limit_rad = limit_rad;
-    row.noise = noise;
+    row.noise = noise.product;
+    row.sound_limit_rad = noise.most_rad;
     row.floor_rad = kFloor_rad;
     row.step_rad = right_step_rad_.row(y);
     row.beside_rad = {row.step_rad - 2, row.step_rad - 1, row.step_rad + 1, row.step_rad + 2};

@@ -74,18 +74,26 @@ class StepMaps {
         std::size_t stride = 0;
         [[nodiscard]] float* row(int y) noexcept;
     };
+    /// Bounds of what deviates by noise.
+    struct Noise {
+        float product = 0.0F;   ///< deviation times modulation, rad grey levels
+        float most_rad = 0.0F;  ///< deviation at any modulation
+    };
     static constexpr int kLines = 8;
 
     void take(int y, ImageView<const float> phase_rad, ImageView<const float> modulation) noexcept;
     void step(int y) noexcept;
-    void judge(int y, float limit_rad, float noise) noexcept;
+    void judge(int y, float limit_rad, const Noise& noise) noexcept;
+    [[nodiscard]] Noise measure_noise(ImageView<const float> phase_rad,
+                                      ImageView<const float> modulation) noexcept;
     void cut_residues() noexcept;
 
     Size size_;
     int words_ = 0;
     Lines phase_rad_, modulation_, right_step_rad_, below_step_rad_;
     std::vector<Word> bad_loops_;  ///< of the row above and of this row
-    std::vector<float> samples_;
+    std::vector<float> deviations_;
+    std::vector<float> products_;
 };
 
 }  // namespace xtrack

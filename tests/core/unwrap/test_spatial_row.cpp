@@ -107,6 +107,7 @@ Bits judged(void (*form)(const JudgeRow&) noexcept) {
     row.other_modulation = rows[5] + 1;
     row.limit_rad = 2.0F;
     row.noise = 40.0F;
+    row.sound_limit_rad = 1.5F;
     row.floor_rad = 0.3F;
     row.possible = bits.data();
     row.sound = bits.data() + kWords;
