@@ -21,11 +21,9 @@ bool is_supported(const RegionLink& link, double support) noexcept {
     return static_cast<double>(link.votes) >= support * kSoundVotes * link.contact;
 }
 
-/// Speaks for itself, even if its regions have grown since it was counted: nearly all of it agrees,
-/// and it is as long as a side of the lesser region, so that there is not much else to count.
-bool is_clear(const RegionLink& link, std::uint32_t lesser_pixels) noexcept {
-    return link.votes >= kClearVotes && is_supported(link, kClearSupport) &&
-           std::uint64_t{link.contact} * link.contact >= lesser_pixels;
+/// At least half as long as a side of the lesser region: there is not much else to count.
+bool is_wide(const RegionLink& link, std::uint32_t lesser_pixels) noexcept {
+    return 4 * std::uint64_t{link.contact} * link.contact >= lesser_pixels;
 }
 
 /// What two surfaces joined on so many votes must agree on at least: while much is certain, nothing
@@ -111,11 +109,11 @@ void RegionLinks::join_all(OrderForest& forest, double support) {
     bool joined = min_votes > 0;
     while (min_votes > 1 || joined) {
         min_votes = std::max(min_votes / (min_votes > kClearVotes ? 2U : 4U), 1U);
-        joined = join_ranked(forest, min_votes, std::max(support, usual_support(min_votes)));
+        joined = join_ranked(forest, min_votes, std::max(support, usual_support(min_votes)), false);
         // Surfaces part by noise touch in a few places until the fragments between them have been
         // shared out, so they come last.
         if (!joined && min_votes == 1) {
-            joined = join_ranked(forest, min_votes, support);
+            joined = join_ranked(forest, min_votes, support, true);
         }
         if (joined) {
             count_anew(forest);
@@ -123,8 +121,10 @@ void RegionLinks::join_all(OrderForest& forest, double support) {
     }
 }
 
+/// @param last whether two surfaces may be joined by a contact that is short for their size
 /// @return whether regions have changed
-bool RegionLinks::join_ranked(OrderForest& forest, std::uint32_t min_votes, double support) {
+bool RegionLinks::join_ranked(OrderForest& forest, std::uint32_t min_votes, double support,
+                              bool last) {
     bool joined = false;
     for (const RegionLink& pair : pairs_) {
         if (pair.votes < min_votes) {
@@ -135,13 +135,16 @@ bool RegionLinks::join_ranked(OrderForest& forest, std::uint32_t min_votes, doub
             continue;
         }
         const std::uint32_t lesser_pixels = std::min(forest.pixels(now.a), forest.pixels(now.b));
-        const bool surfaces = lesser_pixels >= kFragmentPixels;
-        // What was counted before one of them was joined to something else says little of the
-        // whole, unless it is much: the rest waits until it has been counted anew.
-        const bool enough =
-            same_regions(now, pair) ? is_supported(pair, support) : is_clear(pair, lesser_pixels);
-        if (surfaces && !enough) {
-            continue;
+        if (lesser_pixels >= kFragmentPixels) {
+            // What was counted before one of them was joined to something else says little of the
+            // whole, unless it is much: the rest waits until it has been counted anew.
+            const bool grown = !same_regions(now, pair);
+            const bool enough = grown
+                                    ? pair.votes >= kClearVotes && is_supported(pair, kClearSupport)
+                                    : is_supported(pair, support);
+            if (!enough || ((grown || !last) && !is_wide(pair, lesser_pixels))) {
+                continue;
+            }
         }
         forest.join(now.a, now.b, now.order);
         joined = true;

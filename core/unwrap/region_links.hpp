@@ -44,7 +44,7 @@ class RegionLinks {
     void join_all(OrderForest& forest, double support);
 
  private:
-    bool join_ranked(OrderForest& forest, std::uint32_t min_votes, double support);
+    bool join_ranked(OrderForest& forest, std::uint32_t min_votes, double support, bool last);
     void count_anew(OrderForest& forest);
     void rank();
     template <typename Same, typename Merge>
