@@ -131,6 +131,9 @@ void RunGraph::link_contact(const StepMaps& maps, std::uint32_t upper, std::uint
     Word rest = runs_[upper].mask() & runs_[lower].mask();
     // Within the contact the order changes at residues only, for both runs are whole.
     Word breaks = maps.residue[at] & rest & rest >> 1U;
+    // More than half of both runs, so that a run which noise has led from one surface to another
+    // is joined to one of them at most.
+    const int longer = std::max(runs_[upper].pixels(), runs_[lower].pixels());
     while (rest != 0) {
         const Word piece = breaks != 0 ? rest & (breaks ^ (breaks - 1)) : rest;
         rest &= ~piece;
@@ -148,7 +151,8 @@ void RunGraph::link_contact(const StepMaps& maps, std::uint32_t upper, std::uint
         link.votes = kSoundVotes * static_cast<std::uint32_t>(sound) +
                      kPossibleVotes * static_cast<std::uint32_t>(possible - sound);
         link.contact = static_cast<std::uint32_t>(count_bits(piece));
-        if (clear && sound >= kClearPixels && sound >= kClearShare * link.contact) {
+        if (clear && sound >= kClearPixels && sound >= kClearShare * link.contact &&
+            2 * count_bits(piece) > longer) {
             RegionLinks::join(forest_, link);
         } else {
             links_.add(forest_, link);

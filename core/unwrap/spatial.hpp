@@ -60,7 +60,7 @@ inline constexpr int kMaxPhaseComponents = 65535;
 /// Surfaces apart, a component's phase is relative: 2 pi times an unknown whole number is missing.
 class SpatialUnwrapper {
  public:
-    /// Takes all memory that an image of this size can need, some 90 bytes a pixel, most of it
+    /// Takes all memory that an image of this size can need, some 200 bytes a pixel, most of it
     /// touched by badly broken images alone.
     /// @errors invalid_argument: the size or a setting; io: no memory
     /// @thread any
