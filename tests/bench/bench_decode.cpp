@@ -13,8 +13,11 @@
 
 #include "core/decode/decode_row.hpp"
 #include "core/depth/depth_row.hpp"
+#include "core/unwrap/spatial.hpp"
 #include "core/unwrap/unwrap_row.hpp"
 #include "tests/core/pipeline/plane_scene.hpp"
+#include "tests/core/unwrap/phase_scene.hpp"
+#include "tests/core/unwrap/quality_guided_reference.hpp"
 
 namespace xtrack {
 namespace {
@@ -78,6 +81,42 @@ void unwrap_stage(benchmark::State& state) {
     state.SetLabel(decode_instruction_set());
 }
 BENCHMARK(unwrap_stage)->Unit(benchmark::kMicrosecond);
+
+// Spatial unwrapping, and beside it the plain quality-guided algorithm on the same image.
+void spatial(benchmark::State& state, test::PhaseSceneKind kind, bool by_heap) {
+    const auto scene = test::make_phase_scene(kind, 1, {kWidth, kHeight});
+    auto unwrapper = SpatialUnwrapper::create({kWidth, kHeight}, {});
+    if (!unwrapper) {
+        state.SkipWithError(unwrapper.error().message.c_str());
+        return;
+    }
+    Image<float> unwrapped(kWidth, kHeight);
+    Image<std::uint16_t> component(kWidth, kHeight);
+    for (auto _ : state) {
+        if (by_heap) {
+            test::unwrap_by_heap(scene.phase_rad.view(), scene.modulation.view(), 2.0F,
+                                 unwrapped.view(), component.view());
+        } else {
+            benchmark::DoNotOptimize(unwrapper
+                                         ->unwrap(scene.phase_rad.view(), scene.modulation.view(),
+                                                  unwrapped.view(), component.view())
+                                         .data());
+        }
+        benchmark::ClobberMemory();
+    }
+    state.counters["right"] = test::score(scene, unwrapped.view(), component.view()).right;
+    state.SetLabel(by_heap ? "heap of pixels" : decode_instruction_set());
+}
+BENCHMARK_CAPTURE(spatial, bumps, test::PhaseSceneKind::bumps, false)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(spatial, bumps_by_heap, test::PhaseSceneKind::bumps, true)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(spatial, hand, test::PhaseSceneKind::hand, false)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(spatial, hand_by_heap, test::PhaseSceneKind::hand, true)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(spatial, bands, test::PhaseSceneKind::bands, false)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(spatial, salt, test::PhaseSceneKind::salt, false)->Unit(benchmark::kMicrosecond);
 
 void depth_stage(benchmark::State& state) {
     Image<float> rows(kWidth, 2, 250.0F);
