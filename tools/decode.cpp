@@ -6,19 +6,20 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <xtrack/depth_decoder.hpp>
-#include <xtrack/point_cloud.hpp>
 #include <xtrack/recording.hpp>
 
 #include "core/base/file.hpp"
 #include "core/capture/image_codec.hpp"
 #include "core/capture/in_recording.hpp"
 #include "tools/commands.hpp"
+#include "tools/decode_exports.hpp"
 #include "tools/decode_pictures.hpp"
 #include "tools/decode_report.hpp"
 #include "tools/interrupt.hpp"
@@ -37,9 +38,18 @@ struct DecodeOptions {
     std::string out;
     bool all = false;
     std::string order_from;
+    std::set<Export> exports{Export::ply};
     bool json = false;
     double min_modulation = DecodeSettings{}.min_modulation;
 };
+
+// Of one of the three names that the option takes.
+Export export_of(const std::string& name) {
+    if (name == "pcd") {
+        return Export::pcd;
+    }
+    return name == "obj" ? Export::obj : Export::ply;
+}
 
 // Makes the folder of the answer, with its parents. What is there already is never touched.
 Result<base::NewFolder> make_output(const fs::path& wanted) {
@@ -269,13 +279,12 @@ class DecodeRun {
         if (auto ok = write(inside / "depth.png", capture::encode_png(depth.depth.view())); !ok) {
             return ok;
         }
-        const auto cloud =
-            make_point_cloud(depth, recording_.rig(), chosen_.decoder.average().view());
-        if (!cloud) {
-            return capture::in_recording(recording_.folder(), cloud.error());
-        }
-        if (auto ok = write_ply(*cloud, output_->path() / inside / "cloud.ply"); !ok) {
-            return ok;
+        if (auto ok = write_exports(options_.exports, depth, recording_.rig(),
+                                    chosen_.decoder.average().view(), output_->path() / inside);
+            !ok) {
+            return ok.error().code == ErrorCode::invalid_argument
+                       ? capture::in_recording(recording_.folder(), ok.error())
+                       : ok;
         }
         return write(
             inside / "preview.png",
@@ -341,6 +350,20 @@ void add_decode(CLI::App& app, int& exit_status) {
         ->add_option("--min-modulation", options->min_modulation,
                      "Fringe amplitude below which a pixel is masked, grey levels")
         ->capture_default_str();
+    command
+        ->add_option_function<std::vector<std::string>>(
+            "--export",
+            [options](const std::vector<std::string>& names) {
+                options->exports.clear();
+                for (const std::string& name : names) {
+                    options->exports.insert(export_of(name));
+                }
+            },
+            "Forms of the points: ply (cloud.ply), pcd (cloud.pcd), obj (mesh.obj with mesh.mtl "
+            "and mesh.png); a list such as ply,obj")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"ply", "pcd", "obj"}))
+        ->default_str("ply");
     command->add_flag("--json", options->json, "The figures as one JSON object");
     command->callback([options, &exit_status] {
         DecodeSettings settings;

@@ -44,6 +44,9 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"setting_out_of_range",
                 {"decode", "nowhere", "--out", "x", "--min-modulation", "-3"},
                 "min_modulation"},
+        Mistake{
+            "unknown_export", {"decode", "nowhere", "--out", "x", "--export", "ply,nix"}, "nix"},
+        Mistake{"no_export", {"decode", "nowhere", "--out", "x", "--export", ""}, "--export"},
         Mistake{"unknown_format", {"run", "--events", "xml"}, "--events"},
         Mistake{"size_that_is_none", {"bench", "--size", "640x480,nix"}, "nix"},
         Mistake{"size_without_pixels", {"bench", "--size", "640x0"}, "640x0"},
