@@ -40,6 +40,7 @@ Times times_of(std::vector<double> durations_us) {
 std::vector<Measured> measure(const std::vector<Contender>& contenders, std::size_t rounds,
                               const std::function<void()>& step) {
     std::vector<bool> takes_long;
+    takes_long.reserve(contenders.size());
     for (const Contender& contender : contenders) {
         takes_long.push_back(timed_us(contender) > kLong_us);
     }
@@ -57,6 +58,7 @@ std::vector<Measured> measure(const std::vector<Contender>& contenders, std::siz
         step();
     }
     std::vector<Measured> all;
+    all.reserve(contenders.size());
     for (std::size_t i = 0; i < contenders.size(); ++i) {
         all.push_back({contenders[i].name, contenders[i].instruction_set,
                        times_of(std::move(durations_us[i]))});
