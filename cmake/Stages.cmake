@@ -8,8 +8,8 @@ set(XTRACK_STAGES
 
 # Which stage a public header <xtrack/NAME.hpp> belongs to. Nouns that several stages share belong
 # to the earliest of them. A public header that is missing here fails the build.
-set(XTRACK_HEADERS_core/base depth frame geometry image pattern phase_map point_cloud result rig
-                             source stamp)
+set(XTRACK_HEADERS_core/base depth frame geometry image mesh pattern phase_map point_cloud result
+                             rig source stamp)
 set(XTRACK_HEADERS_core/pattern pattern_timeline)
 set(XTRACK_HEADERS_core/capture null_source recording)
 set(XTRACK_HEADERS_core/sim sim)

@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,13 +14,14 @@
 #include <CLI/CLI.hpp>
 #include <xtrack/depth_decoder.hpp>
 #include <xtrack/phase_ripple.hpp>
-#include <xtrack/point_cloud.hpp>
 #include <xtrack/recording.hpp>
+#include <xtrack/relative_depth.hpp>
 
 #include "core/base/file.hpp"
 #include "core/capture/image_codec.hpp"
 #include "core/capture/in_recording.hpp"
 #include "tools/commands.hpp"
+#include "tools/decode_exports.hpp"
 #include "tools/decode_gamma.hpp"
 #include "tools/decode_pictures.hpp"
 #include "tools/decode_report.hpp"
@@ -40,9 +42,18 @@ struct DecodeOptions {
     bool all = false;
     std::string order_from;
     std::string gamma;
+    std::set<Export> exports{Export::ply};
     bool json = false;
     double min_modulation = DecodeSettings{}.min_modulation;
 };
+
+// Of one of the three names that the option takes.
+Export export_of(const std::string& name) {
+    if (name == "pcd") {
+        return Export::pcd;
+    }
+    return name == "obj" ? Export::obj : Export::ply;
+}
 
 // Makes the folder of the answer, with its parents. What is there already is never touched.
 Result<base::NewFolder> make_output(const fs::path& wanted) {
@@ -61,6 +72,16 @@ struct Chosen {
     std::string order;
     std::string note;
 };
+
+// A camera that nobody knows: its image is as wide as it is far.
+Rig nominal_rig(Size image) {
+    Rig rig;
+    rig.camera.size = image;
+    rig.camera.matrix(0, 0) = rig.camera.matrix(1, 1) = image.width;
+    rig.camera.matrix(0, 2) = 0.5 * (image.width - 1);
+    rig.camera.matrix(1, 2) = 0.5 * (image.height - 1);
+    return rig;
+}
 
 int steps_of(const std::vector<double>& phases) { return static_cast<int>(phases.size()); }
 
@@ -88,7 +109,7 @@ Result<Chosen> choose_decoder(const RecordingReader& recording, const PatternSeq
         return DepthDecoder::create(recording.rig(), patterns, recording.image_size(), settings);
     };
     Error refusal{ErrorCode::unsupported,
-                  "no rig.yaml: phase and modulation alone, no depth; add the calibration"};
+                  "no rig.yaml: no millimetres, heights have no scale; add the calibration"};
     if (recording.has_rig()) {
         const OrderSource wanted =
             options.order_from.empty() ? OrderSource::automatic : OrderSource::depth_image;
@@ -160,6 +181,10 @@ class DecodeRun {
 
     [[nodiscard]] std::string answer() const {
         std::string method = describe(patterns_) + "; " + chosen_.order;
+        if (std::any_of(reports_.begin(), reports_.end(),
+                        [](const auto& r) { return r.relative; })) {
+            method += ", unwrapped in space; heights without scale";
+        }
         if (!options_.gamma.empty()) {
             method += fmt::format("; gamma {:.2f}{}", *patterns_.gamma,
                                   options_.gamma == "auto" ? " from the fringes" : "");
@@ -261,9 +286,55 @@ class DecodeRun {
         if (chosen_.makes_depth) {
             return {};
         }
+        auto relative = measure_relative(map);
+        if (!relative) {
+            return relative.error();
+        }
+        if (*relative) {
+            report.relative = true;
+            return write_relative(inside, report);
+        }
         return write(inside / "preview.png",
                      phase_preview(wrapped.view(), fmt::format("{}  wrapped phase, {:g} px",
                                                                report.frame, map.period_px)));
+    }
+
+    // False where the phase holds no surface to measure from.
+    Result<bool> measure_relative(const PhaseMap& map) {
+        if (!relative_) {
+            auto made = RelativeDepth::create(map.phase_rad.size());
+            if (!made) {
+                return made.error();
+            }
+            relative_.emplace(std::move(*made));
+        }
+        const auto measured = relative_->measure(map);
+        if (!measured && measured.error().code != ErrorCode::unsupported) {
+            return measured.error();
+        }
+        return measured.ok();
+    }
+
+    Result<void> write_relative(const fs::path& inside, const DecodeReport& report) {
+        if (auto ok = write(inside / "unwrapped.tiff",
+                            capture::encode_tiff(relative_->unwrapped_rad().view()));
+            !ok) {
+            return ok;
+        }
+        const ImageView<const float> height = relative_->height_rad().view();
+        if (auto ok = write(inside / "height.tiff", capture::encode_tiff(height)); !ok) {
+            return ok;
+        }
+        const Rig rig =
+            recording_.has_rig() ? recording_.rig() : nominal_rig(recording_.image_size());
+        if (auto ok = write_exports(options_.exports, relative_->depth(), rig,
+                                    chosen_.decoder.average().view(), output_->path() / inside);
+            !ok) {
+            return ok;
+        }
+        return write(inside / "preview.png",
+                     height_preview(height, fmt::format("{}  height above the background, no scale",
+                                                        report.frame)));
     }
 
     Result<void> write_depth(const fs::path& inside, std::size_t index, DecodeReport& report) {
@@ -282,13 +353,12 @@ class DecodeRun {
         if (auto ok = write(inside / "depth.png", capture::encode_png(depth.depth.view())); !ok) {
             return ok;
         }
-        const auto cloud =
-            make_point_cloud(depth, recording_.rig(), chosen_.decoder.average().view());
-        if (!cloud) {
-            return capture::in_recording(recording_.folder(), cloud.error());
-        }
-        if (auto ok = write_ply(*cloud, output_->path() / inside / "cloud.ply"); !ok) {
-            return ok;
+        if (auto ok = write_exports(options_.exports, depth, recording_.rig(),
+                                    chosen_.decoder.average().view(), output_->path() / inside);
+            !ok) {
+            return ok.error().code == ErrorCode::invalid_argument
+                       ? capture::in_recording(recording_.folder(), ok.error())
+                       : ok;
         }
         return write(
             inside / "preview.png",
@@ -304,6 +374,7 @@ class DecodeRun {
     OrderDepth order_;
     bool numbered_;  // folders of frames are named by number: their files' names do not tell them
     std::optional<base::NewFolder> output_;
+    std::optional<RelativeDepth> relative_;  // where there is no other
     std::vector<DecodeReport> reports_;
 };
 
@@ -363,6 +434,20 @@ void add_decode(CLI::App& app, int& exit_status) {
         "--gamma", options->gamma,
         "The projector's response, light = value^gamma: a number, or auto to find it "
         "from the fringes (default: as pattern.yaml says)");
+    command
+        ->add_option_function<std::vector<std::string>>(
+            "--export",
+            [options](const std::vector<std::string>& names) {
+                options->exports.clear();
+                for (const std::string& name : names) {
+                    options->exports.insert(export_of(name));
+                }
+            },
+            "Forms of the points: ply (cloud.ply), pcd (cloud.pcd), obj (mesh.obj with mesh.mtl "
+            "and mesh.png); a list such as ply,obj")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"ply", "pcd", "obj"}))
+        ->default_str("ply");
     command->add_flag("--json", options->json, "The figures as one JSON object");
     command->callback([options, &exit_status] {
         DecodeSettings settings;

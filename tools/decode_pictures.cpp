@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <vector>
 
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
@@ -109,6 +111,29 @@ Result<std::string> phase_preview(ImageView<const float> phase_rad, const std::s
         }
     }
     return with_legend(levels, cv::COLORMAP_TWILIGHT, kPi, -kPi, "{:+.2f} rad", title);
+}
+
+Result<std::string> height_preview(ImageView<const float> height_rad, const std::string& title) {
+    std::vector<float> known;
+    for (int y = 0; y < height_rad.height; ++y) {
+        std::copy_if(height_rad.row(y), height_rad.row(y) + height_rad.width,
+                     std::back_inserter(known), [](float h) { return std::isfinite(h); });
+    }
+    std::sort(known.begin(), known.end());
+    const double low = known.empty() ? 0.0 : static_cast<double>(known[known.size() / 100]);
+    const double high =
+        known.empty() ? 0.0 : static_cast<double>(known[known.size() - 1 - known.size() / 100]);
+    Levels levels = empty_levels(height_rad.width, height_rad.height);
+    for (int y = 0; y < height_rad.height; ++y) {
+        for (int x = 0; x < height_rad.width; ++x) {
+            if (std::isfinite(height_rad.at(x, y))) {
+                levels.value.at<std::uint8_t>(y, x) =
+                    level_of(static_cast<double>(height_rad.at(x, y)), low, high);
+                levels.known.at<std::uint8_t>(y, x) = 255;
+            }
+        }
+    }
+    return with_legend(levels, cv::COLORMAP_TURBO, high, low, "{:+.1f} rad", title);
 }
 
 Result<std::string> grey_png(ImageView<const float> image) {

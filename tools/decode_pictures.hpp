@@ -18,6 +18,10 @@ namespace xtrack::tools {
 [[nodiscard]] Result<std::string> phase_preview(ImageView<const float> phase_rad,
                                                 const std::string& title);
 
+/// PNG bytes of heights, rad, NaN in black, with a legend from the 1st to the 99th percentile.
+[[nodiscard]] Result<std::string> height_preview(ImageView<const float> height_rad,
+                                                 const std::string& title);
+
 /// PNG bytes of grey levels, rounded and limited to 0..255.
 [[nodiscard]] Result<std::string> grey_png(ImageView<const float> image);
 

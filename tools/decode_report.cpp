@@ -188,6 +188,9 @@ std::string json_of(const std::string& method, const std::string& note,
             frame["p01_mm"] = r.low_mm;
             frame["p99_mm"] = r.high_mm;
         }
+        if (!r.has_depth) {
+            frame["metric"] = false;
+        }
         if (r.truth) {
             frame["hand"] = {{"pixels", r.truth->pixels},
                              {"rms_mm", r.truth->rms_mm},

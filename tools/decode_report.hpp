@@ -27,6 +27,7 @@ struct DecodeReport {
     std::string folder;  ///< of its results, inside the output; empty: the output itself
     Stamp stamp;
     bool has_depth = false;
+    bool relative = false;       ///< heights above the background, without scale
     double valid_percent = 0.0;  ///< with depth, or where there is none with a phase
     double median_mm = 0.0;
     double low_mm = 0.0;   ///< 1st percentile

@@ -9,8 +9,8 @@
 
 namespace xtrack {
 
-/// The phase that a plane has in a camera image under a projector: (a + b u + c v) / (1 + d u + e v),
-/// u and v the pixel in half images from the centre.
+/// The phase that a plane has in a camera image under a projector: (a + b u + c v) / (1 + d u + e
+/// v), u and v the pixel in half images from the centre.
 class ReferencePlane {
  public:
     /// The plane that most of a component lies in, by least squares whose weights fall with the

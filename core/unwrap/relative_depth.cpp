@@ -162,9 +162,8 @@ Result<void> RelativeDepth::measure(const PhaseMap& map) {
         } else {
             impl.unwrapped = map.phase_rad;
         }
-        const auto components =
-            impl.unwrapper.unwrap(impl.unwrapped.view(), map.modulation.view(),
-                                  impl.unwrapped.view(), impl.component.view());
+        const auto components = impl.unwrapper.unwrap(impl.unwrapped.view(), map.modulation.view(),
+                                                      impl.unwrapped.view(), impl.component.view());
         if (learnt) {
             impl.height = impl.unwrapped;
         } else if (!impl.subtract_plane(components)) {

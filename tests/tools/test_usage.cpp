@@ -44,10 +44,17 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"setting_out_of_range",
                 {"decode", "nowhere", "--out", "x", "--min-modulation", "-3"},
                 "min_modulation"},
+        Mistake{
+            "unknown_export", {"decode", "nowhere", "--out", "x", "--export", "ply,nix"}, "nix"},
+        Mistake{"no_export", {"decode", "nowhere", "--out", "x", "--export", ""}, "--export"},
         Mistake{"unknown_format", {"run", "--events", "xml"}, "--events"},
         Mistake{"gamma_of_words", {"decode", "nowhere", "--out", "x", "--gamma", "much"}, "'much'"},
         Mistake{
             "gamma_out_of_range", {"decode", "nowhere", "--out", "x", "--gamma", "9"}, "0.3 to 4"},
+        Mistake{"size_that_is_none", {"bench", "--size", "640x480,nix"}, "nix"},
+        Mistake{"size_without_pixels", {"bench", "--size", "640x0"}, "640x0"},
+        Mistake{"no_repetitions", {"bench", "--repetitions", "0"}, "--repetitions"},
+        Mistake{"papers_table_has_one_size", {"bench", "--paper", "--size", "64x48"}, "--paper"},
         Mistake{"no_gesture", {"run", "--gestures", ""}, "'' is not known"},
         Mistake{"unknown_preset", {"run", "sim:nix"}, "nix"},
         Mistake{"seed_of_a_folder", {"run", "nowhere", "--seed", "3"}, "only the simulator"},
@@ -69,13 +76,14 @@ TEST_P(Help, IsOnStdoutAndNamesTheOptions) {
     EXPECT_THAT(outcome.out, HasSubstr("--json"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, Help, testing::Values("run", "replay", "eval", "demo", "decode"),
+INSTANTIATE_TEST_SUITE_P(Each, Help,
+                         testing::Values("run", "replay", "eval", "demo", "decode", "bench"),
                          [](const auto& each) { return std::string(each.param); });
 
 TEST(Usage, HelpOfTheCommandNamesEverySubcommand) {
     const Outcome outcome = xtrack_command({"--help"});
     EXPECT_EQ(outcome.status, 0);
-    for (const char* name : {"run", "replay", "eval", "demo", "decode"}) {
+    for (const char* name : {"run", "replay", "eval", "demo", "decode", "bench"}) {
         EXPECT_THAT(outcome.out, HasSubstr(std::string("\n  ") + name + " "));
     }
 }

@@ -40,4 +40,11 @@ struct PointCloud {
 /// @since 0.1
 [[nodiscard]] Result<void> write_ply(const PointCloud& cloud, const std::filesystem::path& file);
 
+/// Writes binary PCD 0.7, the format of the Point Cloud Library: x y z as float, mm, and where
+/// there are colours `rgb`, packed as 0x00RRGGBB. One row of points, whole or not at all as above.
+/// @return io, naming the file; invalid_argument when colours are neither absent nor one a point
+/// @thread any
+/// @since 0.1
+[[nodiscard]] Result<void> write_pcd(const PointCloud& cloud, const std::filesystem::path& file);
+
 }  // namespace xtrack

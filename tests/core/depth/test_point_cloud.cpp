@@ -69,6 +69,39 @@ TEST(PointCloud, WritesBinaryPly) {
     std::filesystem::remove(file);
 }
 
+TEST(PointCloud, WritesBinaryPcd) {
+    const auto file = std::filesystem::path(testing::TempDir()) / "xtrack_test_cloud.pcd";
+    PointCloud cloud;
+    cloud.points_mm = {Vec3f(1.0F, -2.0F, 400.5F), Vec3f(0.0F, 0.0F, 1.0F)};
+    cloud.colours_rgb = {{1, 2, 3}, {4, 5, 255}};
+    ASSERT_TRUE(write_pcd(cloud, file));
+    const auto read = [&] {
+        std::ifstream in(file, std::ios::binary);
+        return std::string((std::istreambuf_iterator<char>(in)), {});
+    };
+    std::string bytes = read();
+    const std::string header =
+        "# .PCD v0.7 - Point Cloud Data file format\n# camera frame, mm\nVERSION 0.7\n"
+        "FIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\n"
+        "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA binary\n";
+    ASSERT_EQ(bytes.substr(0, header.size()), header);
+    ASSERT_EQ(bytes.size(), header.size() + 2U * 16U);
+    // -2 = 0xC0000000, 400.5 = 0x43C84000, then blue, green, red, nothing.
+    EXPECT_EQ(bytes.substr(header.size() + 4, 12),
+              std::string("\x00\x00\x00\xC0\x00\x40\xC8\x43\x03\x02\x01\x00", 12));
+    EXPECT_EQ(bytes.substr(bytes.size() - 4), std::string("\xFF\x05\x04\x00", 4));
+
+    cloud.colours_rgb.clear();
+    cloud.metric = false;
+    ASSERT_TRUE(write_pcd(cloud, file));
+    bytes = read();
+    EXPECT_NE(bytes.find("# camera frame, relative, no scale\n"), std::string::npos);
+    EXPECT_NE(bytes.find("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n"), std::string::npos);
+    const std::string data = "DATA binary\n";
+    EXPECT_EQ(bytes.size(), bytes.find(data) + data.size() + 2U * 12U);
+    std::filesystem::remove(file);
+}
+
 TEST(PointCloud, TouchesNoFileButItsOwn) {
     const std::filesystem::path file =
         std::filesystem::path(testing::TempDir()) / "xtrack_test_own.ply";
@@ -90,6 +123,10 @@ TEST(PointCloud, SaysWhichFileCannotBeWritten) {
     torn.points_mm.resize(2, Vec3f::Zero());
     torn.colours_rgb.resize(1);
     EXPECT_EQ(write_ply(torn, "/tmp/x.ply").error().code, ErrorCode::invalid_argument);
+    EXPECT_EQ(write_pcd(torn, "/tmp/x.pcd").error().code, ErrorCode::invalid_argument);
+    const auto pcd = write_pcd(PointCloud{}, "/nowhere/at/all/cloud.pcd");
+    ASSERT_FALSE(pcd);
+    EXPECT_NE(pcd.error().message.find("/nowhere/at/all/cloud.pcd"), std::string::npos);
 }
 
 }  // namespace
