@@ -2,7 +2,7 @@
 #include "core/decode/decode_row.hpp"
 
 #if XTRACK_WITH_HIGHWAY
-#include <hwy/targets.h>
+#include <hwy/highway.h>
 #endif
 
 namespace xtrack {
@@ -13,7 +13,7 @@ void decode_row(const DecodeRow& row) noexcept { decode_row_highway(row); }
 
 const char* decode_instruction_set() noexcept {
     // The lowest set bit is the best target this CPU supports.
-    const auto supported = hwy::SupportedTargets();
+    const auto supported = hwy::SupportedTargets() & HWY_TARGETS;  // and is compiled
     return hwy::TargetName(supported & -supported);
 }
 

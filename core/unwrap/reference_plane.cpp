@@ -17,6 +17,9 @@ constexpr int kRounds = 20;
 // A robust scale of the residuals, in which half a fringe more is far: never below this, rad.
 constexpr double kLeastScale_rad = 0.02;
 constexpr double kSigmaOfMedian = 1.4826;
+// What stands before a wall is seldom seen along all of the image's border: this share of the
+// image on each side says which plane is meant.
+constexpr double kBorderShare = 0.1;
 
 using Vector5 = Eigen::Matrix<double, 5, 1>;
 using Matrix5 = Eigen::Matrix<double, 5, 5>;
@@ -25,7 +28,14 @@ struct Sample {
     double u;
     double v;
     double phase;
+    bool at_border;
 };
+
+double median(std::vector<double>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
 
 }  // namespace
 
@@ -38,11 +48,16 @@ std::optional<ReferencePlane> ReferencePlane::fit(ImageView<const float> phase_r
     const double pixels = static_cast<double>(phase_rad.width) * phase_rad.height;
     const int stride = std::max(1, static_cast<int>(std::sqrt(pixels / kWantedPixels)));
     std::vector<Sample> samples;
+    std::size_t border = 0;
     for (int y = 0; y < phase_rad.height; y += stride) {
         for (int x = 0; x < phase_rad.width; x += stride) {
             if (component.at(x, y) == id && std::isfinite(phase_rad.at(x, y))) {
-                samples.push_back({x / plane.half_width_px_ - 1.0, y / plane.half_height_px_ - 1.0,
-                                   static_cast<double>(phase_rad.at(x, y))});
+                const double u = x / plane.half_width_px_ - 1.0;
+                const double v = y / plane.half_height_px_ - 1.0;
+                const bool at_border =
+                    std::max(std::fabs(u), std::fabs(v)) > 1.0 - 2.0 * kBorderShare;
+                samples.push_back({u, v, static_cast<double>(phase_rad.at(x, y)), at_border});
+                border += at_border ? 1U : 0U;
             }
         }
     }
@@ -50,15 +65,20 @@ std::optional<ReferencePlane> ReferencePlane::fit(ImageView<const float> phase_r
         kLeastPixels) {
         return std::nullopt;
     }
+    const bool by_border =
+        border * static_cast<std::size_t>(stride) * static_cast<std::size_t>(stride) >=
+        kLeastPixels;
     std::vector<double> residuals(samples.size(), 0.0);
-    double scale = 0.0;  // 0: all weigh alike
+    std::vector<double> distances;
+    double scale = 0.0;  // 0: the first round
     for (int round = 0; round < kRounds; ++round) {
         Matrix5 normal = Matrix5::Zero();
         Vector5 right = Vector5::Zero();
         for (std::size_t i = 0; i < samples.size(); ++i) {
             const Sample& s = samples[i];
             const double far = scale > 0.0 ? residuals[i] / scale : 0.0;
-            const double weight = 1.0 / (1.0 + far * far);
+            const bool counts = scale > 0.0 || !by_border || s.at_border;
+            const double weight = counts ? 1.0 / (1.0 + far * far) : 0.0;
             Vector5 row;
             row << 1.0, s.u, s.v, -s.phase * s.u, -s.phase * s.v;
             normal += weight * row * row.transpose();
@@ -72,16 +92,16 @@ std::optional<ReferencePlane> ReferencePlane::fit(ImageView<const float> phase_r
             return std::nullopt;
         }
         std::copy_n(found.data(), plane.terms_.size(), plane.terms_.begin());
-        std::vector<double> distances(samples.size());
+        distances.clear();
         for (std::size_t i = 0; i < samples.size(); ++i) {
             const Sample& s = samples[i];
             const double below = 1.0 + found[3] * s.u + found[4] * s.v;
             residuals[i] = s.phase - (found[0] + found[1] * s.u + found[2] * s.v) / below;
-            distances[i] = std::fabs(residuals[i]);
+            if (!by_border || s.at_border) {
+                distances.push_back(std::fabs(residuals[i]));
+            }
         }
-        const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-        std::nth_element(distances.begin(), middle, distances.end());
-        scale = std::max(kLeastScale_rad, kSigmaOfMedian * *middle);
+        scale = std::max(kLeastScale_rad, kSigmaOfMedian * median(distances));
     }
     return plane;
 }

@@ -13,8 +13,9 @@ namespace xtrack {
 /// v), u and v the pixel in half images from the centre.
 class ReferencePlane {
  public:
-    /// The plane that most of a component lies in, by least squares whose weights fall with the
-    /// distance, over and over.
+    /// The plane that a component lies in where it reaches the image's border, or that most of it
+    /// lies in where it hardly does: least squares whose weights fall with the distance, over and
+    /// over.
     /// @param phase_rad unwrapped, NaN = none
     /// @return empty where too few pixels are of this component, or none fit a plane
     [[nodiscard]] static std::optional<ReferencePlane> fit(ImageView<const float> phase_rad,

@@ -16,8 +16,8 @@ namespace xtrack {
 /// with the background also an unknown number of fringes; they are put nearest to it.
 ///
 /// The phase is unwrapped in space, by quality. The background is what learn_background() was
-/// shown; before that, the plane that most of the largest surface lies in (its phase is a ratio of
-/// linear functions of the pixel, fitted with weights that outliers lose).
+/// shown; before that, the plane in which the largest surface lies along the image's border (its
+/// phase is a ratio of linear functions of the pixel, fitted with weights that outliers lose).
 /// @thread one at a time
 /// @since 0.1
 class RelativeDepth {
