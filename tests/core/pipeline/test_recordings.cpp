@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@
 
 #include <xtrack/depth_decoder.hpp>
 #include <xtrack/phase_ripple.hpp>
+#include <xtrack/relative_depth.hpp>
 
 #include "tests/core/pipeline/recording_on_disk.hpp"
 
@@ -236,6 +238,33 @@ TEST(GammaOfAHand, IsFoundFromTheFringes) {
     EXPECT_LE(score.rms_mm, 0.6);
     EXPECT_LE(score.off, 0.01);
     EXPECT_LE(score.missing, 0.03);
+}
+
+// Mugs before a wall, without a calibration: the wall is flat, the mugs stand out.
+TEST(HeightsOfMugs, StandOutFromTheWall) {
+    LOAD_OR_SKIP("fringe/mugs", recording);
+    const auto gamma = estimate_gamma(phase_of(recording, std::nullopt), kPhases_rad);
+    ASSERT_TRUE(gamma) << gamma.error().message;
+    auto relative = RelativeDepth::create(recording.size());
+    ASSERT_TRUE(relative);
+    const auto measured = relative->measure(phase_of(recording, *gamma));
+    ASSERT_TRUE(measured) << measured.error().message;
+    const Image<float>& height = relative->height_rad();
+    const auto percentile_in = [&](const cv::Rect& part, double share) {
+        std::vector<float> heights;
+        for (int y = part.y; y < part.y + part.height; ++y) {
+            std::copy_if(height.row(y) + part.x, height.row(y) + part.x + part.width,
+                         std::back_inserter(heights), [](float h) { return std::isfinite(h); });
+        }
+        EXPECT_GT(heights.size(), static_cast<std::size_t>(part.area()) / 2);
+        std::sort(heights.begin(), heights.end());
+        return heights[static_cast<std::size_t>(share * static_cast<double>(heights.size() - 1))];
+    };
+    const cv::Rect wall(800, 60, 900, 200);
+    EXPECT_NEAR(percentile_in(wall, 0.5), 0.0F, 0.2F);
+    EXPECT_LT(percentile_in(wall, 0.99) - percentile_in(wall, 0.01), 0.8F);
+    const cv::Rect mug(500, 560, 330, 400);
+    EXPECT_GT(percentile_in(mug, 0.9) - percentile_in(mug, 0.1), 3.0F);
 }
 
 struct Moving {
