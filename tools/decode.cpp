@@ -41,7 +41,7 @@ struct DecodeOptions {
     std::string out;
     bool all = false;
     std::string order_from;
-    std::string gamma;
+    std::optional<std::string> gamma;
     std::set<Export> exports{Export::ply};
     bool json = false;
     double min_modulation = DecodeSettings{}.min_modulation;
@@ -185,7 +185,7 @@ class DecodeRun {
                         [](const auto& r) { return r.relative; })) {
             method += ", unwrapped in space; heights without scale";
         }
-        if (!options_.gamma.empty()) {
+        if (options_.gamma) {
             method += fmt::format("; gamma {:.2f}{}", *patterns_.gamma,
                                   options_.gamma == "auto" ? " from the fringes" : "");
         }

@@ -79,21 +79,22 @@ std::vector<double> shortest_phases(const PatternSequence& patterns) {
     return phases;
 }
 
-std::string gamma_complaint(const std::string& wanted) {
-    if (wanted.empty() || wanted == "auto") {
+std::string gamma_complaint(const std::optional<std::string>& wanted) {
+    if (!wanted || *wanted == "auto") {
         return {};
     }
-    const auto value = number(wanted);
+    const auto value = number(*wanted);
     return value ? std::string() : value.error().message;
 }
 
-Result<PatternSequence> with_gamma(const RecordingReader& recording, const std::string& wanted) {
+Result<PatternSequence> with_gamma(const RecordingReader& recording,
+                                   const std::optional<std::string>& wanted) {
     PatternSequence patterns = recording.patterns();
-    if (wanted.empty()) {
+    if (!wanted) {
         return patterns;
     }
-    if (wanted != "auto") {
-        const auto value = number(wanted);
+    if (*wanted != "auto") {
+        const auto value = number(*wanted);
         if (!value) {
             return value.error();
         }

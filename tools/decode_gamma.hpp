@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,13 +15,13 @@ namespace xtrack::tools {
 [[nodiscard]] std::vector<double> shortest_phases(const PatternSequence& patterns);
 
 /// The recording's patterns with the projector's response that `--gamma` asks for.
-/// @param wanted empty: as the recording says; `auto`: found from the fringes of the first set;
+/// @param wanted absent: as the recording says; `auto`: found from the fringes of the first set;
 ///        else a number
 /// @errors invalid_argument: no such number; unsupported: the fringes do not tell
 [[nodiscard]] Result<PatternSequence> with_gamma(const RecordingReader& recording,
-                                                 const std::string& wanted);
+                                                 const std::optional<std::string>& wanted);
 
-/// Why `wanted` is none that `--gamma` takes; empty: it is one.
-[[nodiscard]] std::string gamma_complaint(const std::string& wanted);
+/// Why `wanted` is none that `--gamma` takes; empty: it is one, or absent.
+[[nodiscard]] std::string gamma_complaint(const std::optional<std::string>& wanted);
 
 }  // namespace xtrack::tools

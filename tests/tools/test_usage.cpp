@@ -48,6 +48,7 @@ INSTANTIATE_TEST_SUITE_P(
             "unknown_export", {"decode", "nowhere", "--out", "x", "--export", "ply,nix"}, "nix"},
         Mistake{"no_export", {"decode", "nowhere", "--out", "x", "--export", ""}, "--export"},
         Mistake{"unknown_format", {"run", "--events", "xml"}, "--events"},
+        Mistake{"no_gamma", {"decode", "nowhere", "--out", "x", "--gamma", ""}, "'' is neither"},
         Mistake{"gamma_of_words", {"decode", "nowhere", "--out", "x", "--gamma", "much"}, "'much'"},
         Mistake{
             "gamma_out_of_range", {"decode", "nowhere", "--out", "x", "--gamma", "9"}, "0.3 to 4"},
