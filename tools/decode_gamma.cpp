@@ -101,12 +101,20 @@ Result<PatternSequence> with_gamma(const RecordingReader& recording,
         patterns.gamma = *value;
         return patterns;
     }
+    const std::vector<double> phases_rad = shortest_phases(patterns);
+    if (phases_rad.size() != 3) {
+        return Error{
+            ErrorCode::unsupported,
+            fmt::format("{}: --gamma auto: the shortest period has {} grey images, three "
+                        "tell the gamma; give a number, or leave it out",
+                        (recording.folder() / "pattern.yaml").string(), phases_rad.size())};
+    }
     patterns.gamma.reset();
     const auto phase = first_phase(recording, patterns);
     if (!phase) {
         return phase.error();
     }
-    const auto gamma = estimate_gamma(*phase, shortest_phases(patterns));
+    const auto gamma = estimate_gamma(*phase, phases_rad);
     if (!gamma) {
         return Error{gamma.error().code,
                      fmt::format("{}: --gamma auto: {}", recording.folder().string(),

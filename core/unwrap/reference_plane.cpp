@@ -78,7 +78,9 @@ std::optional<ReferencePlane> ReferencePlane::fit(ImageView<const float> phase_r
             const Sample& s = samples[i];
             const double far = scale > 0.0 ? residuals[i] / scale : 0.0;
             const bool counts = scale > 0.0 || !by_border || s.at_border;
-            const double weight = counts ? 1.0 / (1.0 + far * far) : 0.0;
+            // Geman and McClure's: what is far off must not pull at all.
+            const double trust = 1.0 / (1.0 + far * far);
+            const double weight = counts ? trust * trust : 0.0;
             Vector5 row;
             row << 1.0, s.u, s.v, -s.phase * s.u, -s.phase * s.v;
             normal += weight * row * row.transpose();

@@ -337,6 +337,31 @@ TEST_F(Recording, WithoutProjectorHasPhaseButNoGestures) {
     }
 }
 
+TEST_F(Recording, WithoutRigGivesHeightsWithoutScale) {
+    write_fringes(recording_);
+    fs::remove(recording_ / "rig.yaml");
+    const Outcome outcome = xtrack_command(
+        {"decode", recording_.string(), "--out", out_.string(), "--json", "--export", "ply,obj"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("heights without scale"));
+    EXPECT_THAT(outcome.out, HasSubstr("\"metric\":false"));
+    for (const char* name : {"wrapped.tiff", "unwrapped.tiff", "height.tiff", "cloud.ply",
+                             "mesh.obj", "preview.png"}) {
+        EXPECT_GT(fs::file_size(out_ / name), 500U) << name;
+    }
+    EXPECT_FALSE(fs::exists(out_ / "depth.png"));
+    EXPECT_FALSE(fs::exists(out_ / "coordinate.tiff"));
+}
+
+TEST_F(Recording, OfFourStepsHasNoGammaToFind) {
+    write_fringes(recording_);
+    set_text(recording_ / "pattern.yaml",
+             capture::patterns_text(n_step_sequence(Axis::x, {512, 384}, 512.0, 4)));
+    expect_refused(
+        xtrack_command({"decode", recording_.string(), "--out", out_.string(), "--gamma", "auto"}),
+        "/pattern.yaml: --gamma auto: the shortest period has 4 grey images");
+}
+
 TEST_F(Recording, IsNotDecodedOverSomethingElse) {
     write_fringes(recording_);
     fs::create_directory(out_);

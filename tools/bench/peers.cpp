@@ -120,6 +120,7 @@ Contender memcpy_peer(Size size, std::shared_ptr<FrameRing> ring) {
 }
 
 #if !XTRACK_WITH_OPENCV_CONTRIB
+// NOLINTNEXTLINE(performance-unnecessary-value-param): where it is built, the peer keeps the ring
 std::optional<Contender> opencv_peer(const Scene& /*scene*/, std::shared_ptr<FrameRing> /*ring*/) {
     return std::nullopt;
 }

@@ -104,7 +104,7 @@ std::string table_of_size(const SizeReport& report) {
         ratio(whole, times_named(report.peers, "memcpy")).value_or(0.0),
         ratio(times_named(report.peers, "scalar_atan2f"), whole).value_or(0.0));
     if (const auto faster = ratio(times_named(report.peers, "opencv_contrib"), whole)) {
-        text += fmt::format(", {:.0f} x than OpenCV contrib", *faster);
+        text += fmt::format(", {:.0f} x faster than OpenCV contrib", *faster);
     }
     return text +
            fmt::format("\ndepth is {:.2f} mm off the wall (median)\n", report.depth_error_mm);

@@ -58,7 +58,7 @@ TEST(RelativeDepth, HeightsAreAboveThePlaneOfTheWall) {
         auto depth = RelativeDepth::create(kImage).value();
         ASSERT_TRUE(depth.measure(
             photograph([&](int x, int y) { return wall(x, y) + side * bump(x, y); })));
-        EXPECT_LT(worst(depth.height_rad(), 1.0), 0.06) << side;
+        EXPECT_LT(worst(depth.height_rad(), 1.0), 0.03) << side;
         EXPECT_EQ(depth.component().at(0, 0), 1);
     }
 }
