@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/decode/arctangent.hpp"
 #include "core/decode/decode_row.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -7,8 +6,9 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "core/decode/arctangent_highway.hpp"
+
 #include <limits>
-#include <numbers>
 
 HWY_BEFORE_NAMESPACE();
 namespace xtrack::HWY_NAMESPACE {
@@ -17,25 +17,6 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::ScalableTag<float>;
 using V = hn::Vec<D>;
-
-HWY_INLINE V arctangent2(D d, V y, V x) {
-    const V ax = hn::Abs(x);
-    const V ay = hn::Abs(y);
-    // A tiny divisor keeps 0 / 0 from becoming NaN: black pixels have phase 0 before the mask.
-    const V larger = hn::Max(hn::Max(ax, ay), hn::Set(d, std::numeric_limits<float>::min()));
-    const V t = hn::Div(hn::Min(ax, ay), larger);
-    const V t2 = hn::Mul(t, t);
-    V p = hn::Set(d, kArctangent[5]);
-    for (std::size_t k = 5; k-- > 0;) {
-        p = hn::MulAdd(p, t2, hn::Set(d, kArctangent[k]));
-    }
-    V angle = hn::Mul(p, t);
-    angle = hn::IfThenElse(hn::Gt(ay, ax),
-                           hn::Sub(hn::Set(d, std::numbers::pi_v<float> / 2.0F), angle), angle);
-    angle = hn::IfThenElse(hn::Lt(x, hn::Zero(d)),
-                           hn::Sub(hn::Set(d, std::numbers::pi_v<float>), angle), angle);
-    return hn::IfThenElse(hn::Lt(y, hn::Zero(d)), hn::Neg(angle), angle);
-}
 
 // kTaps > 0 fixes the number of images at compile time, which keeps the coefficients in registers.
 template <int kTaps>

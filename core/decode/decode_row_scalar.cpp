@@ -1,39 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "core/decode/arctangent.hpp"
 #include "core/decode/decode_row.hpp"
 
 namespace xtrack {
-namespace {
-
-float arctangent2(float y, float x) noexcept {
-    const float ax = std::fabs(x);
-    const float ay = std::fabs(y);
-    const float larger = ax > ay ? ax : ay;
-    if (larger == 0.0F) {
-        return 0.0F;
-    }
-    const float t = (ax > ay ? ay : ax) / larger;
-    const float t2 = t * t;
-    float p = kArctangent[5];
-    for (std::size_t k = 5; k-- > 0;) {
-        p = p * t2 + kArctangent[k];
-    }
-    float angle = p * t;
-    if (ay > ax) {
-        angle = std::numbers::pi_v<float> / 2.0F - angle;
-    }
-    if (x < 0.0F) {
-        angle = std::numbers::pi_v<float> - angle;
-    }
-    return y < 0.0F ? -angle : angle;
-}
-
-}  // namespace
-
 void decode_row_scalar(const DecodeRow& row) noexcept {
     const float least_power = row.min_modulation * row.min_modulation;
     for (int i = 0; i < row.count; ++i) {

@@ -29,18 +29,28 @@ Result<std::vector<SinePlan>> collect_sines(const PatternSequence& sequence) {
     std::vector<SinePlan> sines;
     for (std::size_t i = 0; i < sequence.patterns.size(); ++i) {
         const Pattern& pattern = sequence.patterns[i];
-        if (pattern.kind != PatternKind::sine) {
+        if (pattern.kind != PatternKind::sine && pattern.kind != PatternKind::rgb_sine) {
             continue;
         }
+        const bool colour = pattern.kind == PatternKind::rgb_sine;
         auto same = std::find_if(sines.begin(), sines.end(), [&](const SinePlan& plan) {
-            return std::fabs(plan.period_px - pattern.period_px) <= kSamePeriod * pattern.period_px;
+            return plan.colour == colour &&
+                   std::fabs(plan.period_px - pattern.period_px) <= kSamePeriod * pattern.period_px;
         });
         if (same == sines.end()) {
             same = sines.insert(sines.end(), SinePlan{});
             same->period_px = pattern.period_px;
+            same->colour = colour;
+        } else if (colour) {
+            return unsupported("entry " + std::to_string(i) +
+                               ": a second colour pattern of one period; use one");
         }
         same->patterns.push_back(static_cast<int>(i));
-        same->phases_rad.push_back(pattern.phase_rad[0]);
+        if (colour) {
+            same->phases_rad.assign(pattern.phase_rad.begin(), pattern.phase_rad.end());
+        } else {
+            same->phases_rad.push_back(pattern.phase_rad[0]);
+        }
     }
     for (SinePlan& plan : sines) {
         auto taps = least_squares_taps(plan.phases_rad);
@@ -150,19 +160,33 @@ Result<std::optional<CyclePlan>> find_cycle(const SinePlan& sine, int pattern_co
     return std::optional<CyclePlan>{cycle};
 }
 
+Result<void> check_colours(const std::vector<SinePlan>& sines) {
+    double direction = 0.0;
+    for (const SinePlan& sine : sines) {
+        if (!sine.colour) {
+            if (direction != 0.0) {
+                return unsupported(
+                    "a grey period is shorter than its colour periods; colour must "
+                    "be the shortest");
+            }
+            continue;
+        }
+        const double step = turned(sine.phases_rad[1] - sine.phases_rad[0]);
+        if (direction * step < 0.0) {
+            return unsupported(
+                "its colour patterns go through their phases in both directions; use one");
+        }
+        direction = step;
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<DecodePlan> DecodePlan::create(const PatternSequence& sequence,
                                       const DecodeSettings& settings) {
     if (auto valid = validate(sequence); !valid) {
         return malformed(valid.error().message);
-    }
-    for (std::size_t i = 0; i < sequence.patterns.size(); ++i) {
-        if (sequence.patterns[i].kind == PatternKind::rgb_sine) {
-            return unsupported("entry " + std::to_string(i) +
-                               " is rgb_sine; colour fringes are not decoded by this version, "
-                               "project grey sine patterns instead");
-        }
     }
     DecodePlan plan;
     plan.axis = sequence.axis;
@@ -185,18 +209,23 @@ Result<DecodePlan> DecodePlan::create(const PatternSequence& sequence,
         plan.gray->cell_px > plan.sines.front().period_px * (1.0 + kSamePeriod)) {
         return unsupported("Gray code cells wider than the longest period leave its order open");
     }
-    if (plan.sines.size() == 1) {
+    if (auto colours = check_colours(plan.sines); !colours) {
+        return colours.error();
+    }
+    if (plan.sines.size() == 1 && !plan.sines.front().colour) {
         auto cycle = find_cycle(plan.sines.front(), plan.pattern_count, settings.taps);
         if (!cycle) {
             return cycle.error();
         }
         plan.cycle = *std::move(cycle);
     } else if (settings.taps != PhaseTaps::automatic && settings.taps != PhaseTaps::least_squares) {
-        return unsupported("the chosen taps need a sequence of one period; choose least_squares");
+        return unsupported(
+            "the chosen taps need a sequence of one grey period; choose least_squares");
     }
     for (const Pattern& pattern : sequence.patterns) {
-        plan.pattern_phase_rad.push_back(pattern.kind == PatternKind::sine ? pattern.phase_rad[0]
-                                                                           : 0.0);
+        const bool sine =
+            pattern.kind == PatternKind::sine || pattern.kind == PatternKind::rgb_sine;
+        plan.pattern_phase_rad.push_back(sine ? pattern.phase_rad[0] : 0.0);
     }
     for (const SinePlan& sine : plan.sines) {
         plan.needed.insert(plan.needed.end(), sine.patterns.begin(), sine.patterns.end());

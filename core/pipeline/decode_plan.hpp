@@ -18,7 +18,8 @@ namespace xtrack {
 /// The images of one period. Indices are into PatternSequence::patterns.
 struct SinePlan {
     double period_px = 0.0;
-    std::vector<int> patterns;
+    bool colour = false;        ///< one pattern, its three phases in red, green, blue
+    std::vector<int> patterns;  ///< one for each phase; a colour pattern alone
     std::vector<double> phases_rad;
     TapSet newest_taps;  ///< least squares over the newest image of each pattern
     GammaCorrection gamma;
@@ -54,6 +55,13 @@ struct DecodePlan {
     /// @return unsupported or invalid_argument, naming the pattern
     [[nodiscard]] static Result<DecodePlan> create(const PatternSequence& patterns,
                                                    const DecodeSettings& settings);
+    [[nodiscard]] bool colour() const noexcept { return !sines.empty() && sines.back().colour; }
+    /// The colour period that orders the shortest one; null: something else does.
+    [[nodiscard]] const SinePlan* colour_reference() const noexcept {
+        return colour() && sines.size() > 1 && sines[sines.size() - 2].colour
+                   ? &sines[sines.size() - 2]
+                   : nullptr;
+    }
 };
 
 }  // namespace xtrack

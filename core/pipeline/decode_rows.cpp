@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <complex>
 #include <limits>
 #include <span>
 
 #include "core/decode/decode_row.hpp"
 #include "core/decode/luma.hpp"
+#include "core/decode/rgb_row.hpp"
 #include "core/pipeline/depth_decoder_impl.hpp"
 #include "core/unwrap/gray_code.hpp"
 #include "core/unwrap/unwrap_row.hpp"
@@ -27,6 +29,10 @@ bool DepthDecoder::Impl::choose_images(std::size_t sine, int y, Images& images) 
             images.taps = plan.cycle->designs[static_cast<std::size_t>(images.frames[0]->pattern)];
             return true;
         }
+    }
+    if (period.colour) {
+        choose_colour_images(period, y, images);
+        return images.taps.count > 0;
     }
     // Every frame of a pattern that is held: their mean has less noise, and as each pattern keeps
     // its weight, harmonics err as in the plain taps.
@@ -52,6 +58,20 @@ bool DepthDecoder::Impl::choose_images(std::size_t sine, int y, Images& images) 
     return true;
 }
 
+void DepthDecoder::Impl::choose_colour_images(const SinePlan& period, int y,
+                                              Images& images) const noexcept {
+    std::array<const Frame*, FrameWindow::kFramesPerShow> frames{};
+    static_assert(FrameWindow::kFramesPerShow <= kMaxColourFrames);
+    const std::size_t seen = window.clean_show(period.patterns.front(), y, frames);
+    images.taps.count = static_cast<int>(seen);
+    for (std::size_t k = 0; k < seen; ++k) {
+        // The channels' taps are those of a pattern whose red has the phase 0.
+        const auto turn = std::polar(1.0 / static_cast<double>(seen), -period.phases_rad.front());
+        images.taps.taps[k] = {static_cast<float>(turn.real()), static_cast<float>(turn.imag())};
+        images.frames[k] = frames[k];
+    }
+}
+
 const std::uint8_t* DepthDecoder::Impl::grey_row(const Frame& frame, int y,
                                                  std::size_t buffer) noexcept {
     const std::uint8_t* pixels = frame.pixels.row(y);
@@ -65,13 +85,12 @@ const std::uint8_t* DepthDecoder::Impl::grey_row(const Frame& frame, int y,
 
 void DepthDecoder::Impl::decode_sine_row(std::size_t sine, const Images& images, int y,
                                          const RowOut& out) noexcept {
-    DecodeRow row;
-    row.taps = images.taps.count;
+    const auto count = static_cast<std::size_t>(images.taps.count);
     // Columns in which every shifted image has a pixel.
     int begin = 0;
     int end = size.width;
     bool inside = true;
-    for (std::size_t n = 0; n < static_cast<std::size_t>(row.taps); ++n) {
+    for (std::size_t n = 0; n < count; ++n) {
         const Tap& tap = images.taps.taps[n];
         begin = std::max(begin, -tap.dx);
         end = std::min(end, size.width - tap.dx);
@@ -83,22 +102,44 @@ void DepthDecoder::Impl::decode_sine_row(std::size_t sine, const Images& images,
         std::fill_n(out.modulation, size.width, 0.0F);
         return;
     }
-    for (std::size_t n = 0; n < static_cast<std::size_t>(row.taps); ++n) {
-        const Tap& tap = images.taps.taps[n];
-        row.source[n] = grey_row(*images.frames[n], y + tap.dy, n) + begin + tap.dx;
-        row.re[n] = tap.re;
-        row.im[n] = tap.im;
-    }
     std::fill_n(out.phase, begin, kNone);
     std::fill_n(out.modulation, begin, 0.0F);
     std::fill(out.phase + end, out.phase + size.width, kNone);
     std::fill(out.modulation + end, out.modulation + size.width, 0.0F);
-    row.count = end - begin;
-    row.min_modulation = static_cast<float>(settings.min_modulation);
-    row.saturation_limit = settings.mask_saturated ? kClipped : kNoSaturationLimit;
-    row.phase_rad = out.phase + begin;
-    row.modulation = out.modulation + begin;
-    decode_row(row);
+    const auto fill = [&](auto& row) {
+        row.count = end - begin;
+        row.min_modulation = static_cast<float>(settings.min_modulation);
+        row.saturation_limit = settings.mask_saturated ? kClipped : kNoSaturationLimit;
+        row.phase_rad = out.phase + begin;
+        row.modulation = out.modulation + begin;
+    };
+    if (plan.sines[sine].colour) {
+        RgbRow row;
+        fill(row);
+        row.frames = count;
+        for (std::size_t c = 0; c < 3; ++c) {
+            row.re[c] = row_taps.row(static_cast<int>(c)) + begin;
+            row.im[c] = row_taps.row(static_cast<int>(c) + 3) + begin;
+        }
+        for (std::size_t n = 0; n < count; ++n) {
+            const Tap& tap = images.taps.taps[n];
+            row.bgr[n] = images.frames[n]->pixels.row(y + tap.dy) +
+                         static_cast<std::ptrdiff_t>(3) * (begin + tap.dx);
+            row.turn[n] = {tap.re, tap.im};
+        }
+        rgb_row(row);
+    } else {
+        DecodeRow row;
+        fill(row);
+        row.taps = images.taps.count;
+        for (std::size_t n = 0; n < count; ++n) {
+            const Tap& tap = images.taps.taps[n];
+            row.source[n] = grey_row(*images.frames[n], y + tap.dy, n) + begin + tap.dx;
+            row.re[n] = tap.re;
+            row.im[n] = tap.im;
+        }
+        decode_row(row);
+    }
     plan.sines[sine].gamma.apply(size.width, out.phase);
 }
 
@@ -257,6 +298,9 @@ void DepthDecoder::Impl::decode_rows(int begin, int end) noexcept {
             phase_map.phase_rad.empty() ? row_phase.row(0) : phase_map.phase_rad.row(y),
             keep ? phase_map.modulation.row(y) : row_modulation.row(0),
             coordinate.empty() ? row_coordinate.row(0) : coordinate.row(y)};
+        if (palette) {
+            colours_of_row(y);
+        }
         decode_row_chain(still, y, out);
         if (motion) {
             decode_moving_row(y, out);

@@ -38,6 +38,11 @@ Result<void> DepthDecoder::Impl::prepare(const Rig& rig) {
         }
         geometry.emplace(*std::move(made));
     }
+    if (plan.colour()) {
+        if (auto made = prepare_colours(rig); !made) {
+            return made.error();
+        }
+    }
     if (settings.order == OrderSource::automatic && !plan.gray) {
         auto made = OrderReference::create(geometry ? &*geometry : nullptr, size,
                                            plan.sines.front().period_px, plan.coded_length_px);
@@ -103,6 +108,9 @@ DecodeStatus DepthDecoder::Impl::push(const FramePtr& frame) noexcept {
     if (last_stamp && frame->stamp < *last_stamp) {
         return reject(RejectReason::time_backwards);
     }
+    if (palette && frame->format == PixelFormat::grey8) {
+        return reject(RejectReason::no_colour);
+    }
     last_stamp = frame->stamp;
     window.push(frame);
     if (motion) {
@@ -113,11 +121,21 @@ DecodeStatus DepthDecoder::Impl::push(const FramePtr& frame) noexcept {
             return {DecodeState::need_more, RejectReason::none};
         }
     }
+    if (palette && frame->pattern != plan.sines.back().patterns.front()) {
+        // Of use for the order of the next image, but no phase that was not seen before.
+        return {DecodeState::need_more, RejectReason::none};
+    }
     moving_depth_mm = motion && motion->moving() ? find_moving_depth_mm() : 0.0;
     oldest_image = frame->stamp;
+    if (palette) {
+        tell_surfaces();
+    }
     const std::span<const int> edges = window.row_edges(size.height);
     for (std::size_t n = 0; n + 1 < edges.size(); ++n) {
         decode_rows(edges[n], edges[n + 1]);
+    }
+    if (palette) {
+        palette->learn();
     }
     register_depth(*frame);
     return {DecodeState::depth_ready, RejectReason::none};
@@ -165,6 +183,8 @@ const char* describe(RejectReason reason) noexcept {
         case RejectReason::unknown_pattern: return "nobody knows which pattern the frame saw";
         case RejectReason::pattern_out_of_range:
             return "the frame's pattern index is not in the pattern sequence";
+        case RejectReason::no_colour:
+            return "the frame is grey, its pattern is told apart by colour; record in colour";
         case RejectReason::time_backwards:
             return "the frame's stamp is before that of the frame before it";
     }
@@ -234,6 +254,9 @@ void DepthDecoder::reset() noexcept {
     impl_->window.clear();
     if (impl_->motion) {
         impl_->motion->clear();
+    }
+    if (impl_->palette) {
+        impl_->palette->clear();
     }
     impl_->last_stamp.reset();
 }

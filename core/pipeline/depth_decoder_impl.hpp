@@ -7,6 +7,7 @@
 
 #include <xtrack/depth_decoder.hpp>
 
+#include "core/decode/colour_palette.hpp"
 #include "core/decode/taps.hpp"
 #include "core/depth/triangulation.hpp"
 #include "core/pipeline/decode_plan.hpp"
@@ -21,7 +22,8 @@ namespace xtrack {
 struct DepthDecoder::Impl {
     Impl(DecodePlan decode_plan, const DecodeSettings& decode_settings, Size image);
 
-    // The images that one period is decoded from, in one stretch of rows.
+    // The images that one period is decoded from, in one stretch of rows. Of a colour period the
+    // taps are turns of the phase that its channels give.
     struct Images {
         TapSet taps;
         std::array<const Frame*, kMaxTaps> frames{};
@@ -40,11 +42,26 @@ struct DepthDecoder::Impl {
     void decode_rows(int begin, int end) noexcept;
     void mask_rows(int begin, int end) noexcept;
     bool choose_images(std::size_t sine, int y, Images& images) const noexcept;
+    void choose_colour_images(const SinePlan& period, int y, Images& images) const noexcept;
     const std::uint8_t* grey_row(const Frame& frame, int y, std::size_t buffer) noexcept;
     void decode_sine_row(std::size_t sine, const Images& images, int y, const RowOut& out) noexcept;
     void decode_gray_row(int y, float* coordinate, float* modulation) noexcept;
     /// Decodes and unwraps every period; out.coordinate is not touched without geometry.
     void decode_row_chain(const std::vector<Images>& chain, int y, const RowOut& out) noexcept;
+    // colour_rows.cpp: which surface every pixel is of.
+    struct ColourRow {                       // what samples of a row are taken from
+        const std::uint8_t* fine = nullptr;  // bgr; null: not seen cleanly
+        const std::uint8_t* coarse = nullptr;
+        const float* reference_px = nullptr;  // null: nothing known
+    };
+    Result<void> prepare_colours(const Rig& rig);
+    void tell_surfaces() noexcept;
+    void choose_surfaces() noexcept;
+    void draw_borders() noexcept;
+    [[nodiscard]] ColourRow colour_row(int y) const noexcept;
+    void sample_colours(const ColourRow& row, int x, std::size_t at,
+                        const ColourSamplesOut& out) const noexcept;
+    void colours_of_row(int y) noexcept;
     void average_row(const Images& images, int y) noexcept;
     void triangulate_row(int y, const RowOut& row) noexcept;
 
@@ -60,6 +77,8 @@ struct DepthDecoder::Impl {
     Size size;
     FrameWindow window;
     std::optional<MotionEstimator> motion;
+    std::optional<ColourPalette> palette;  // only where the sequence has colour fringes
+    ColourModel colours;
     std::optional<Triangulation> geometry;
     OrderReference order;
     Image<float> order_px;  // from set_order_depth()
@@ -79,6 +98,8 @@ struct DepthDecoder::Impl {
     Image<float> row_phase, row_modulation, row_coordinate, row_reference, row_ideal, row_rays;
     Image<float> moving_phase, moving_modulation, moving_coordinate;
     Image<std::uint8_t> row_grey;
+    Image<float> row_taps;  // ColourModel::kTaps rows, for the row at hand
+    int row_of_taps = -1;
 };
 
 }  // namespace xtrack

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 #include <span>
@@ -68,10 +69,12 @@ void DepthDecoder::Impl::follow_images() noexcept {
         moved = still[sine];
         const auto count = static_cast<std::size_t>(moved.taps.count);
         std::array<double, kMaxTaps> phases{};
+        std::array<double, kMaxTaps> drifts{};
         for (std::size_t n = 0; n < count; ++n) {
             const Frame& frame = *moved.frames[n];
             const double drift_rad =
                 2.0 * std::numbers::pi / period.period_px * drift_px_since(frame);
+            drifts[n] = drift_rad;
             phases[n] = plan.pattern_phase_rad[static_cast<std::size_t>(frame.pattern)] + drift_rad;
             const double back_s = to_seconds(*last_stamp - frame.stamp);
             if (back_s > 0.0) {
@@ -80,7 +83,17 @@ void DepthDecoder::Impl::follow_images() noexcept {
                              std::fabs(drift_rad) / back_s * motion->seconds_per_cycle());
             }
         }
-        can_follow = can_follow && fit_taps(std::span(phases).first(count), moved.taps);
+        if (period.colour) {
+            for (std::size_t n = 0; n < count; ++n) {
+                const auto turn =
+                    std::complex<double>(moved.taps.taps[n].re, moved.taps.taps[n].im) *
+                    std::polar(1.0, -drifts[n]);
+                moved.taps.taps[n].re = static_cast<float>(turn.real());
+                moved.taps.taps[n].im = static_cast<float>(turn.imag());
+            }
+        } else {
+            can_follow = can_follow && fit_taps(std::span(phases).first(count), moved.taps);
+        }
         for (std::size_t n = 0; n < count; ++n) {
             const Shift shift = motion->to(*moved.frames[n]);
             moved.taps.taps[n].dx = shift.dx;
@@ -129,7 +142,9 @@ void DepthDecoder::Impl::decode_moving_row(int y, const RowOut& out) noexcept {
             std::copy(moved.modulation + begin, moved.modulation + end, out.modulation + begin);
             std::copy(moved.coordinate + begin, moved.coordinate + end, out.coordinate + begin);
         }
-        mask_disagreeing(y, begin, end, follow, out);
+        if (!plan.colour()) {
+            mask_disagreeing(y, begin, end, follow, out);
+        }
     }
 }
 

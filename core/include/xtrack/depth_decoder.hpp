@@ -16,7 +16,8 @@ namespace xtrack {
 /// What a pushed frame led to.
 /// @since 0.1
 enum class DecodeState {
-    need_more,    ///< taken; not every pattern has been seen yet
+    need_more,    ///< taken, but no new depth: not every pattern has been seen yet, or it is the
+                  ///< coarse image of a colour sequence
     depth_ready,  ///< taken; depth() is new
     rejected,     ///< not taken; `reason` says why. depth() is as before.
 };
@@ -29,6 +30,7 @@ enum class RejectReason {
     wrong_size,            ///< not the size the decoder was made for
     unknown_pattern,       ///< nobody knows which pattern it saw
     pattern_out_of_range,  ///< its pattern index is not in the sequence
+    no_colour,             ///< a grey image of a colour pattern
     time_backwards,        ///< its stamp is before that of the frame pushed last
 };
 
@@ -52,11 +54,16 @@ struct DecodeStatus {
 /// The depth image's stamp and sequence are those of the frame it is registered to: the newest
 /// where motion is followed (DecodeSettings), else the centre of the window that gave its phase.
 ///
-/// What is used of a sequence: sines by period, from the longest (three or more phases each); a
-/// Gray code with white and black images or inverted bits; other flat patterns are passed over.
-/// Where the projector's gamma is known, the phase error it causes is subtracted: a power of a sine
-/// has harmonics that depend on gamma alone, so the error is a function of the phase, whatever the
-/// skin's shade and the ambient light.
+/// What is used of a sequence: sines by period, from the longest (three or more phases each, or one
+/// colour pattern with its phases in red, green and blue); a Gray code with white and black images
+/// or inverted bits; other flat patterns are passed over. Where the projector's gamma is known, the
+/// phase error it causes is subtracted: a power of a sine has harmonics that depend on gamma alone,
+/// so the error is a function of the phase, whatever the skin's shade and the ambient light.
+///
+/// Colour fringes give a phase with every image of the shortest period, and no motion tears it:
+/// a depth image comes with each such image, other colour periods only order it. What surfaces do
+/// to the colours is learnt while it runs; Rig::camera_from_projector_rgb undoes what camera and
+/// projector do.
 ///
 /// Where a pattern is held for some camera frames, the clean rows of two of them are averaged, and
 /// motion is measured from one frame to the next.

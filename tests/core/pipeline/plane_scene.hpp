@@ -46,10 +46,11 @@ inline std::shared_ptr<Frame> plane_frame(const Rig& rig, const PatternSequence&
     frame->pixels.resize(rig.camera.size.width * channels, rig.camera.size.height);
     const Pattern& p = patterns.patterns[static_cast<std::size_t>(pattern)];
     for (int u = 0; u < rig.camera.size.width; ++u) {
-        const double light = intensity(p, std::clamp(plane_coordinate(rig, u, z_mm), 0.0, 511.0));
-        const auto grey = static_cast<std::uint8_t>(std::lround(30.0 + 180.0 * light));
-        for (int v = 0; v < rig.camera.size.height; ++v) {
-            for (int c = 0; c < channels; ++c) {
+        const double x = std::clamp(plane_coordinate(rig, u, z_mm), 0.0, 511.0);
+        for (int c = 0; c < channels; ++c) {
+            const double light = intensity(p, x, 2 - c);  // in bytes blue comes first
+            const auto grey = static_cast<std::uint8_t>(std::lround(30.0 + 180.0 * light));
+            for (int v = 0; v < rig.camera.size.height; ++v) {
                 frame->pixels.at(u * channels + c, v) = grey;
             }
         }

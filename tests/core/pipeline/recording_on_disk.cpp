@@ -45,6 +45,12 @@ Pattern read_pattern(const cv::FileNode& node) {
         pattern.kind = PatternKind::sine;
         pattern.period_px = node["period_px"];
         pattern.phase_rad[0] = node["phase_rad"];
+    } else if (kind == "rgb_sine") {
+        pattern.kind = PatternKind::rgb_sine;
+        pattern.period_px = node["period_px"];
+        for (std::size_t k = 0; k < pattern.phase_rad.size(); ++k) {
+            pattern.phase_rad[k] = node["phase_rad"][static_cast<int>(k)];
+        }
     } else if (kind == "gray_code") {
         pattern.kind = PatternKind::gray_code;
         pattern.bit = node["bit"];
@@ -79,6 +85,11 @@ void read_rig(RecordingOnDisk& recording) {
     recording.rig.projector = read_lens(rig, "projector");
     read_matrix(rig, "projector_from_camera_R", recording.rig.projector_from_camera_R);
     read_matrix(rig, "projector_from_camera_T", recording.rig.projector_from_camera_T);
+    if (!rig["camera_from_projector_rgb"].empty()) {
+        Mat3d colours;
+        read_matrix(rig, "camera_from_projector_rgb", colours);
+        recording.rig.camera_from_projector_rgb = colours;
+    }
     if (const cv::FileNode volume = rig["working_volume_mm"]; !volume.empty()) {
         recording.rig.working_volume =
             WorkingVolume{static_cast<double>(volume[0]), static_cast<double>(volume[1])};

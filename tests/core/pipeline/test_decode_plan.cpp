@@ -25,7 +25,8 @@ bool says(const Error& error, ErrorCode code, const char* text) {
 }
 
 TEST(DecodePlan, RefusesSequencesThatItHasNoMethodFor) {
-    says(refusal(rgb_sequence(Axis::x, kProjector, {512.0})), ErrorCode::unsupported, "rgb_sine");
+    says(refusal(rgb_sequence(Axis::x, kProjector, {32.0})), ErrorCode::unsupported,
+         "repeats inside the working volume");
     says(refusal(three_step_sequence(Axis::x, kProjector, 32.0)), ErrorCode::unsupported,
          "repeats inside the working volume");
     Rig open = test::plane_rig();

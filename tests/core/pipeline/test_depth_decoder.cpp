@@ -292,5 +292,56 @@ TEST(DepthDecoder, SizesThatNoImageHasAreRefused) {
     }
 }
 
+// Colour fringes: one image is a phase, the other its order.
+PatternSequence rgb() { return rgb_sequence(Axis::x, {512, 384}, {512.0, 64.0}); }
+
+TEST(Colour, GivesTheWallWithEveryImageOfTheFinePattern) {
+    DepthDecoder decoder = make(rgb());
+    EXPECT_EQ(decoder.frames_needed(), 2);
+    for (int n = 0; n < 8; ++n) {
+        const DecodeStatus status =
+            decoder.push(plane_frame(plane_rig(), rgb(), n % 2, n, kWall, PixelFormat::bgr8));
+        EXPECT_EQ(status.state, n % 2 == 1 ? DecodeState::depth_ready : DecodeState::need_more);
+        if (n % 2 == 1) {
+            EXPECT_GT(score(decoder.depth(), kWall).good, 0.98);
+            EXPECT_EQ(decoder.depth().stamp, Stamp::from_us(10000 * n));
+        }
+    }
+}
+
+TEST(Colour, GreyFramesAreRefusedWithTheReason) {
+    DepthDecoder decoder = make(rgb());
+    const DecodeStatus status = decoder.push(plane_frame(plane_rig(), rgb(), 0, 0, kWall));
+    EXPECT_EQ(status.state, DecodeState::rejected);
+    EXPECT_EQ(status.reason, RejectReason::no_colour);
+    EXPECT_NE(std::string(describe(status.reason)).find("colour"), std::string::npos);
+}
+
+TEST(Colour, OnePatternWillDoWhereItsPeriodIsUnique) {
+    const PatternSequence one = rgb_sequence(Axis::x, {512, 384}, {512.0});
+    DepthDecoder decoder = make(one);
+    EXPECT_EQ(decoder.frames_needed(), 1);
+    for (int n = 0; n < 3; ++n) {
+        EXPECT_EQ(decoder.push(plane_frame(plane_rig(), one, 0, n, kWall, PixelFormat::bgr8)).state,
+                  DecodeState::depth_ready);
+    }
+    EXPECT_GT(score(decoder.depth(), kWall).good, 0.9);
+}
+
+TEST(Colour, TellsWhatItCannotDecode) {
+    PatternSequence both = rgb();
+    both.patterns[1].phase_rad = {0.0, 2.0943951, 4.1887902};
+    const auto turned = DepthDecoder::create(plane_rig(), both, plane_rig().camera.size, {});
+    ASSERT_FALSE(turned);
+    EXPECT_NE(turned.error().message.find("both directions"), std::string::npos);
+    PatternSequence uneven = rgb();
+    uneven.patterns[1].phase_rad = {0.0, 1.0, 2.0};
+    uneven.patterns[0].phase_rad = {0.0, 1.0, 2.0};
+    EXPECT_FALSE(DepthDecoder::create(plane_rig(), uneven, plane_rig().camera.size, {}));
+    PatternSequence twice = rgb();
+    twice.patterns.push_back(twice.patterns.back());
+    EXPECT_FALSE(DepthDecoder::create(plane_rig(), twice, plane_rig().camera.size, {}));
+}
+
 }  // namespace
 }  // namespace xtrack

@@ -171,6 +171,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Still{"rendered/static-dual", OrderSource::automatic, 0.45},
                     Still{"rendered/static-gray", OrderSource::automatic, 0.5},
                     Still{"rendered/static-three-step", OrderSource::depth_image, 0.45},
+                    Still{"rendered/static-rgb", OrderSource::automatic, 0.6},
                     Still{"rendered/static-dual-gamma22", OrderSource::automatic, 0.8}));
 
 // Of three steps; where the first begins does not matter to gamma.

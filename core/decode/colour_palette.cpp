@@ -1,0 +1,447 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/decode/colour_palette.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/decode/arctangent.hpp"
+
+namespace xtrack {
+namespace {
+
+constexpr float kTurn = 2.0F * std::numbers::pi_v<float>;
+// Skin of any tone reflects about twice as much red as blue (haemoglobin, melanin).
+constexpr std::array<float, 3> kSkin{1.4F, 0.95F, 0.75F};
+constexpr float kSkinContrast = 0.7F;
+constexpr std::size_t kGiven = 2;  // surfaces that are always there: grey and skin
+
+constexpr float kLeastLight = 30.0F;  // grey levels, sum of the colours
+
+// What a surface is believed to be counts as so many pixels.
+constexpr float kBelievedPixels = 20.0F;
+constexpr float kDamping = 0.5F;
+constexpr float kSureCost = 0.15F;   // pixels of more do not teach
+constexpr float kPairWeight = 0.3F;  // of what two periods say, against what the contrast says
+constexpr float kFade = 0.5F;        // of what a fit knows, from frame to frame
+
+// Votes for gains, over E.
+constexpr float kVoteRange = 0.4F;
+constexpr float kMisfitScale = 0.02F;  // of logarithms of light, squared
+constexpr float kVoteFade = 0.9F;
+constexpr float kLeastVotes = 3.0F;
+constexpr float kLeastShare = 0.015F;
+constexpr float kSameGain = 0.07F;  // nearer in E: one surface
+constexpr float kTwinGain = 0.02F;  // what two surfaces have become one at
+constexpr int kSearchesAtFirst = 20000;
+constexpr int kSearches = 128;
+
+// Within one period.
+float coordinate_px(const ColourModel::Light& seen, const ColourPeriod& period) noexcept {
+    return (arctangent2(seen[2], seen[1]) - static_cast<float>(period.phase_rad)) / kTurn *
+           static_cast<float>(period.period_px);
+}
+
+// How far a is ahead of b, in shares of a period, whole ones left out.
+float shares_apart(float a_px, float b_px, const ColourPeriod& period) noexcept {
+    const float apart = (a_px - b_px) / static_cast<float>(period.period_px);
+    return apart - std::floor(apart + 0.5F);
+}
+
+float distance(const ColourSurface& a, const ColourSurface& b) noexcept {
+    return std::hypot(a.log_gain[0] - b.log_gain[0], a.log_gain[1] - b.log_gain[1]);
+}
+
+}  // namespace
+
+ColourPalette::ColourPalette(Size image, const ColourModel& model, const ColourPeriod& fine,
+                             const std::optional<ColourPeriod>& coarse,
+                             const Image<float>& first_px, const Image<float>& last_px)
+    : size_(image),
+      model_(model),
+      fine_(fine),
+      coarse_(coarse),
+      samples_(samples(image)),
+      first_px_(first_px),
+      last_px_(last_px),
+      cells_((image.width + kCellPx - 1) / kCellPx, (image.height + kCellPx - 1) / kCellPx, 0),
+      surfaces_(cells_.width() * kCellPx / kFineStepPx, cells_.height() * kCellPx / kFineStepPx, 0),
+      votes_(kVoteCells, kVoteCells, 0.0F),
+      vote_contrast_(kVoteCells, kVoteCells, 0.0F),
+      blurred_(kVoteCells, kVoteCells, 0.0F) {
+    if (coarse) {
+        search_ = ColourSearch(model, *coarse, fine);
+    }
+    for (Image<float>& plane : planes_) {
+        plane.resize(samples_.width, samples_.height);
+    }
+    for (Image<float>& cost : costs_) {
+        cost.resize(samples_.width, samples_.height);
+    }
+    evidence_.resize(static_cast<std::size_t>(cells_.width()) *
+                     static_cast<std::size_t>(cells_.height()));
+    smoothed_.resize(evidence_.size());
+    clear();
+}
+
+void ColourPalette::set(std::size_t entry, const ColourSurface& surface) noexcept {
+    Entry& e = entries_[entry];
+    e.surface = surface;
+    e.inverse = model_.inverse(surface);
+    e.taps = model_.taps(e.inverse);
+}
+
+void ColourPalette::clear() noexcept {
+    for (Entry& entry : entries_) {
+        entry.fit.clear();
+        entry.cells = 0;
+    }
+    set(0, ColourSurface{});
+    set(1, model_.surface(kSkin, kSkinContrast));
+    used_ = kGiven;
+    cells_.fill(0);
+    surfaces_.fill(0);
+    votes_.fill(0.0F);
+    vote_contrast_.fill(0.0F);
+    next_search_ = 0;
+    frames_ = 0;
+}
+
+void ColourPalette::begin() noexcept {
+    for (Image<float>& plane : planes_) {
+        plane.fill(0.0F);
+    }
+    std::fill(evidence_.begin(), evidence_.end(), Evidence{});
+}
+
+ColourSamplesOut ColourPalette::row(int y) noexcept {
+    const int sy = y / kSampleStepPx;
+    return {{planes_[0].row(sy), planes_[1].row(sy), planes_[2].row(sy)},
+            {planes_[3].row(sy), planes_[4].row(sy), planes_[5].row(sy)},
+            planes_[6].row(sy)};
+}
+
+ColourSamples ColourPalette::row_samples(int row) const noexcept {
+    return {{planes_[0].row(row), planes_[1].row(row), planes_[2].row(row)},
+            {planes_[3].row(row), planes_[4].row(row), planes_[5].row(row)},
+            planes_[6].row(row)};
+}
+
+ColourModel::Light ColourPalette::fine_at(int sx, int sy) const noexcept {
+    return {planes_[0].at(sx, sy), planes_[1].at(sx, sy), planes_[2].at(sx, sy)};
+}
+
+ColourModel::Light ColourPalette::coarse_at(int sx, int sy) const noexcept {
+    return {planes_[3].at(sx, sy), planes_[4].at(sx, sy), planes_[5].at(sx, sy)};
+}
+
+void ColourPalette::measure(const Entry& entry, const ColourSamples& samples, int count,
+                            float* cost) const noexcept {
+    ColourCost row;
+    row.inverse = entry.inverse;
+    row.contrast = entry.surface.contrast;
+    row.fine = fine_;
+    row.has_coarse = coarse_.has_value();
+    row.coarse = coarse_.value_or(ColourPeriod{});
+    row.samples = samples;
+    row.count = count;
+    row.cost = cost;
+    colour_cost(row);
+}
+
+void ColourPalette::add_row(int y) noexcept {
+    const int sy = y / kSampleStepPx;
+    const ColourSamples samples = row_samples(sy);
+    for (std::size_t k = 0; k < used_; ++k) {
+        measure(entries_[k], samples, samples_.width, costs_[k].row(sy));
+    }
+    Evidence* cells = evidence_.data() + static_cast<std::size_t>(y / kCellPx) *
+                                             static_cast<std::size_t>(cells_.width());
+    for (int i = 0; i < samples_.width; ++i) {
+        if (samples.fine[0][i] + samples.fine[1][i] + samples.fine[2][i] < kLeastLight) {
+            continue;
+        }
+        Evidence& cell = cells[i * kSampleStepPx / kCellPx];
+        cell.pixels += 1.0F;
+        for (std::size_t k = 0; k < used_; ++k) {
+            cell.cost[k] += costs_[k].at(i, sy);
+        }
+    }
+}
+
+void ColourPalette::choose() noexcept {
+    const int width = cells_.width();
+    const int height = cells_.height();
+    const auto at = [&](int x, int y) { return static_cast<std::size_t>(y * width + x); };
+    const auto add = [](Evidence& to, const Evidence& of, float weight) {
+        to.pixels += weight * of.pixels;
+        for (std::size_t k = 0; k < kMostSurfaces; ++k) {
+            to.cost[k] += weight * of.cost[k];
+        }
+    };
+    for (Entry& entry : entries_) {
+        entry.cells = 0;
+    }
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            Evidence sum;
+            for (int j = std::max(0, y - 1); j <= std::min(height - 1, y + 1); ++j) {
+                for (int i = std::max(0, x - 1); i <= std::min(width - 1, x + 1); ++i) {
+                    const float weight = (i == x ? 2.0F : 1.0F) * (j == y ? 2.0F : 1.0F);
+                    add(sum, evidence_[at(i, j)], weight);
+                }
+            }
+            smoothed_[at(x, y)] = sum;
+            std::size_t best = 0;
+            for (std::size_t k = 1; k < used_; ++k) {
+                best = sum.cost[k] < sum.cost[best] ? k : best;
+            }
+            cells_.at(x, y) = static_cast<std::uint8_t>(best);
+            entries_[best].cells += sum.pixels > 0.0F ? 1 : 0;
+            constexpr int kFine = kCellPx / kFineStepPx;
+            for (int j = 0; j < kFine; ++j) {
+                std::fill_n(surfaces_.row(y * kFine + j) + x * kFine, kFine,
+                            static_cast<std::uint8_t>(best));
+            }
+        }
+    }
+}
+
+bool ColourPalette::at_border(int cell_x, int cell_y) const noexcept {
+    const std::uint8_t here = cells_.at(cell_x, cell_y);
+    for (int j = std::max(0, cell_y - 1); j <= std::min(cells_.height() - 1, cell_y + 1); ++j) {
+        for (int i = std::max(0, cell_x - 1); i <= std::min(cells_.width() - 1, cell_x + 1); ++i) {
+            if (cells_.at(i, j) != here) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+void ColourPalette::draw_border(int cell_x, int cell_y, const ColourSamples& samples) noexcept {
+    std::array<bool, kMostSurfaces> near{};
+    for (int j = std::max(0, cell_y - 1); j <= std::min(cells_.height() - 1, cell_y + 1); ++j) {
+        for (int i = std::max(0, cell_x - 1); i <= std::min(cells_.width() - 1, cell_x + 1); ++i) {
+            near[cells_.at(i, j)] = true;
+        }
+    }
+    constexpr int kFine = kCellPx / kFineStepPx;
+    std::array<float, kFine * kFine> least{};
+    least.fill(std::numeric_limits<float>::max());
+    std::array<float, kFineSamples * kFineSamples> costs{};
+    for (std::size_t k = 0; k < used_; ++k) {
+        if (!near[k]) {
+            continue;
+        }
+        measure(entries_[k], samples, static_cast<int>(costs.size()), costs.data());
+        for (int y = 0; y < kFine; ++y) {
+            for (int x = 0; x < kFine; ++x) {
+                float sum = 0.0F;
+                for (int j = y; j < y + 3; ++j) {
+                    for (int i = x; i < x + 3; ++i) {
+                        sum += costs[static_cast<std::size_t>(j * kFineSamples + i)];
+                    }
+                }
+                float& best = least[static_cast<std::size_t>(y * kFine + x)];
+                if (sum < best) {
+                    best = sum;
+                    surfaces_.at(cell_x * kFine + x, cell_y * kFine + y) =
+                        static_cast<std::uint8_t>(k);
+                }
+            }
+        }
+    }
+}
+
+void ColourPalette::refine() noexcept {
+    for (std::size_t k = 0; k < used_; ++k) {
+        entries_[k].fit.fade(frames_ < kFirstFrames ? 0.0F : kFade);
+    }
+    for (int sy = 0; sy < samples_.height; ++sy) {
+        for (int sx = 0; sx < samples_.width; ++sx) {
+            const ColourModel::Light light = fine_at(sx, sy);
+            const std::size_t surface =
+                cells_.at(sx * kSampleStepPx / kCellPx, sy * kSampleStepPx / kCellPx);
+            if (light.sum() < kLeastLight || !(costs_[surface].at(sx, sy) < kSureCost)) {
+                continue;
+            }
+            Entry& entry = entries_[surface];
+            const ColourModel::Light fine = entry.inverse * light;
+            entry.fit.add(entry.surface, fine, 1.0F);
+            if (coarse_) {
+                const ColourModel::Light coarse = entry.inverse * coarse_at(sx, sy);
+                const float ratio =
+                    static_cast<float>(fine_.period_px) / static_cast<float>(coarse_->period_px);
+                const float ahead = shares_apart(coordinate_px(coarse, *coarse_),
+                                                 coordinate_px(fine, fine_), fine_);
+                entry.fit.add_pair(entry.surface, fine, coarse, ratio, kTurn * ratio * ahead,
+                                   kPairWeight);
+            }
+        }
+    }
+    for (std::size_t k = 0; k < used_; ++k) {
+        // Half a step: which cells are a surface's changes with what is believed of it.
+        Entry& entry = entries_[k];
+        set(k, entry.fit.solve(entry.surface, kBelievedPixels + kDamping * entry.fit.pixels()));
+    }
+}
+
+void ColourPalette::vote(const ColourHypothesis& hypothesis, float weight) noexcept {
+    const auto cell = [](float e) {
+        return static_cast<int>(std::floor((e + kVoteRange) / (2.0F * kVoteRange) * kVoteCells));
+    };
+    const int x = cell(hypothesis.surface.log_gain[0]);
+    const int y = cell(hypothesis.surface.log_gain[1]);
+    if (x < 0 || y < 0 || x >= kVoteCells || y >= kVoteCells) {
+        return;
+    }
+    votes_.at(x, y) += weight;
+    vote_contrast_.at(x, y) += weight * hypothesis.surface.contrast;
+}
+
+void ColourPalette::search() noexcept {
+    for (int y = 0; y < kVoteCells; ++y) {
+        for (int x = 0; x < kVoteCells; ++x) {
+            votes_.at(x, y) *= kVoteFade;
+            vote_contrast_.at(x, y) *= kVoteFade;
+        }
+    }
+    // At first one sample a cell; then a few cells a frame, in an order that is spread over the
+    // image, and rather those that no surface explains.
+    const std::size_t cells = evidence_.size();
+    const int budget = frames_ == 0 ? kSearchesAtFirst : kSearches;
+    int done = 0;
+    for (std::size_t tried = 0; tried < cells && done < budget; ++tried) {
+        constexpr std::size_t kStride = 1013;  // prime, so that every cell has its turn
+        next_search_ = (next_search_ + kStride) % cells;
+        const auto cx = static_cast<int>(next_search_ % static_cast<std::size_t>(cells_.width()));
+        const auto cy = static_cast<int>(next_search_ / static_cast<std::size_t>(cells_.width()));
+        const Evidence& evidence = smoothed_[next_search_];
+        constexpr float kExplained = 0.08F;
+        const float least = evidence.cost[cells_.at(cx, cy)];
+        if (frames_ > 0 && least < kExplained * evidence.pixels) {
+            continue;
+        }
+        const int sx = std::min(cx * kCellPx / kSampleStepPx + 1, samples_.width - 1);
+        const int sy = std::min(cy * kCellPx / kSampleStepPx + 1, samples_.height - 1);
+        ++done;
+        ColourSearch::Hypotheses hypotheses;
+        const std::size_t found =
+            search_.find(coarse_at(sx, sy), fine_at(sx, sy), first_px_.at(sx, sy),
+                         last_px_.at(sx, sy), hypotheses);
+        std::array<float, ColourSearch::kMostHypotheses> likelihood{};
+        float sum = 0.05F;  // that none of them is right
+        for (std::size_t n = 0; n < found; ++n) {
+            likelihood[n] = std::exp(-hypotheses[n].misfit / kMisfitScale);
+            sum += likelihood[n];
+        }
+        for (std::size_t n = 0; n < found; ++n) {
+            // Low contrast is explained by much: it says little.
+            const float contrast = hypotheses[n].surface.contrast;
+            vote(hypotheses[n], contrast * contrast * likelihood[n] / sum);
+        }
+    }
+}
+
+void ColourPalette::found_surfaces() noexcept {
+    constexpr int kBlur = 2;
+    constexpr std::array<float, 2 * kBlur + 1> kKernel{1.0F, 3.0F, 4.0F, 3.0F, 1.0F};
+    float total = 0.0F;
+    for (int y = 0; y < kVoteCells; ++y) {
+        for (int x = 0; x < kVoteCells; ++x) {
+            float sum = 0.0F;
+            for (int j = -kBlur; j <= kBlur; ++j) {
+                for (int i = -kBlur; i <= kBlur; ++i) {
+                    const int u = std::clamp(x + i, 0, kVoteCells - 1);
+                    const int v = std::clamp(y + j, 0, kVoteCells - 1);
+                    sum += kKernel[static_cast<std::size_t>(i + kBlur)] *
+                           kKernel[static_cast<std::size_t>(j + kBlur)] * votes_.at(u, v);
+                }
+            }
+            blurred_.at(x, y) = sum / 16.0F;
+            total += votes_.at(x, y);
+        }
+    }
+    constexpr float kCell = 2.0F * kVoteRange / kVoteCells;
+    for (std::size_t n = 0; n < kMostSurfaces; ++n) {
+        float most = 0.0F;
+        ColourSurface surface;
+        for (int y = kBlur; y < kVoteCells - kBlur; ++y) {
+            for (int x = kBlur; x < kVoteCells - kBlur; ++x) {
+                if (blurred_.at(x, y) <= most) {
+                    continue;
+                }
+                ColourSurface here;
+                here.log_gain = {(static_cast<float>(x) + 0.5F) * kCell - kVoteRange,
+                                 (static_cast<float>(y) + 0.5F) * kCell - kVoteRange};
+                bool known = false;
+                for (std::size_t k = 0; k < used_; ++k) {
+                    known = known || distance(entries_[k].surface, here) < kSameGain;
+                }
+                if (known) {
+                    continue;
+                }
+                most = blurred_.at(x, y);
+                float weight = 1e-6F;
+                float contrast = 0.0F;
+                for (int j = -kBlur; j <= kBlur; ++j) {
+                    for (int i = -kBlur; i <= kBlur; ++i) {
+                        weight += votes_.at(x + i, y + j);
+                        contrast += vote_contrast_.at(x + i, y + j);
+                    }
+                }
+                here.contrast = contrast / weight;
+                surface = here;
+            }
+        }
+        if (most < std::max(kLeastVotes, kLeastShare * total)) {
+            return;
+        }
+        std::size_t at = used_;
+        if (used_ < kMostSurfaces) {
+            ++used_;
+        } else {
+            // The least of those that were found before, if it is next to nothing.
+            at = kGiven;
+            for (std::size_t k = kGiven; k < used_; ++k) {
+                at = entries_[k].cells < entries_[at].cells ? k : at;
+            }
+            constexpr int kFewCells = 8;
+            if (entries_[at].cells >= kFewCells) {
+                return;
+            }
+        }
+        set(at, surface);
+        entries_[at].fit.clear();
+        entries_[at].cells = std::numeric_limits<int>::max();  // not at once given away again
+    }
+}
+
+void ColourPalette::drop_twins() noexcept {
+    for (std::size_t k = kGiven; k < used_;) {
+        bool twin = false;
+        for (std::size_t n = 0; n < k; ++n) {
+            twin = twin || distance(entries_[k].surface, entries_[n].surface) < kTwinGain;
+        }
+        if (twin) {
+            --used_;
+            std::swap(entries_[k], entries_[used_]);
+        } else {
+            ++k;
+        }
+    }
+}
+
+void ColourPalette::learn() noexcept {
+    refine();
+    if (coarse_) {
+        drop_twins();
+        search();
+        found_surfaces();
+    }
+    frames_ = std::min(frames_ + 1, kFirstFrames);
+}
+
+}  // namespace xtrack
