@@ -10,7 +10,7 @@ set(XTRACK_STAGES
 # to the earliest of them. A public header that is missing here fails the build.
 set(XTRACK_HEADERS_core/base depth frame geometry image mesh pattern phase_map point_cloud result
                              rig source stamp)
-set(XTRACK_HEADERS_core/pattern pattern_timeline)
+set(XTRACK_HEADERS_core/pattern method pattern_timeline)
 set(XTRACK_HEADERS_core/capture null_source recording)
 set(XTRACK_HEADERS_core/sim sim)
 set(XTRACK_HEADERS_core/decode decode_settings phase_ripple)

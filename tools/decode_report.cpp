@@ -29,6 +29,7 @@ std::string name_of(const Pattern& p) {
         case PatternKind::sine: return fmt::format("sine {:g} px", p.period_px);
         case PatternKind::rgb_sine: return fmt::format("colour sine {:g} px", p.period_px);
         case PatternKind::gray_code: return fmt::format("Gray code {:g} px", p.cell_px);
+        case PatternKind::ramp: return fmt::format("ramp {:g} px", p.period_px);
         case PatternKind::flat: break;
     }
     return "flat";

@@ -28,6 +28,7 @@ int run(int argc, char** argv) {
     app.failure_message(usage_message);
     int exit_status = 0;
     xtrack::tools::add_run(app, exit_status);
+    xtrack::tools::add_methods(app, exit_status);
     xtrack::tools::add_replay(app, exit_status);
     xtrack::tools::add_eval(app, exit_status);
     xtrack::tools::add_demo(app, exit_status);

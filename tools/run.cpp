@@ -4,10 +4,12 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <xtrack/sim.hpp>
 
 #include "tools/commands.hpp"
+#include "tools/method_choice.hpp"
 #include "tools/stream.hpp"
 
 namespace xtrack::tools {
@@ -17,6 +19,7 @@ namespace {
 struct RunOptions {
     std::string source = "sim";
     std::uint64_t seed = 0;
+    std::string method;
     StreamOptions stream;
 };
 
@@ -26,19 +29,31 @@ bool is_simulator(const std::string& source) {
 
 /// `sim` with a seed is another person on another day; without one it is the same as everywhere.
 Result<Session> open(const RunOptions& run, const SessionOptions& options) {
-    if (run.seed == 0) {
+    if (run.seed == 0 && run.method.empty()) {
         return Session::open(run.source, options);
     }
     if (!is_simulator(run.source)) {
         return Error{ErrorCode::invalid_argument,
-                     "--seed: only the simulator has one; leave it out for " + run.source};
+                     run.seed != 0
+                         ? "--seed: only the simulator has one; leave it out for " + run.source
+                         : "--method: what a recording shows is in its pattern.yaml; leave it out "
+                           "for " +
+                               run.source};
     }
-    const std::string preset = run.source == "sim" ? "ideal-60" : run.source.substr(4);
-    auto settings = SimSettings::preset(preset);
+    auto settings = preset_of(run.source);
     if (!settings) {
         return settings.error();
     }
-    settings->vary(run.seed);
+    if (run.seed != 0) {
+        settings->vary(run.seed);
+    }
+    if (!run.method.empty()) {
+        const auto shown = show_method(run.method, options.gestures, *settings);
+        if (!shown) {
+            return shown.error();
+        }
+        fmt::print(stderr, "method {}: {}\n", info(shown->method).name, shown->reason);
+    }
     auto rig = SimulatedRig::create(*settings);
     if (!rig) {
         return rig.error();
@@ -58,6 +73,9 @@ void add_run(CLI::App& app, int& exit_status) {
         ->default_str("sim");
     command->add_option("--seed", run->seed, "Simulator: another person, movement and noise")
         ->check(CLI::PositiveNumber);
+    command->add_option(
+        "--method", run->method,
+        "Simulator: what the projector shows; auto or a name from `xtrack methods`");
     add_stream_options(*command, run->stream);
     command->callback([=, &exit_status] {
         SessionOptions options;

@@ -133,6 +133,9 @@ Result<void> read_optional_fields(const YamlMap& map, RigFile& file) {
 }
 
 Result<void> read_phases(const YamlMap& map, Pattern& p) {
+    if (p.kind == PatternKind::ramp) {
+        return {};
+    }
     if (p.kind == PatternKind::sine) {
         const auto phase = map.number("phase_rad");
         if (!phase) {
@@ -204,10 +207,13 @@ Result<Pattern> read_pattern(const YamlMap& map) {
         }
         return p;
     }
-    if (*kind != "sine" && *kind != "rgb_sine") {
-        return map.error("kind", "is none that is known; use sine, rgb_sine, gray_code or flat");
+    if (*kind != "sine" && *kind != "rgb_sine" && *kind != "ramp") {
+        return map.error("kind",
+                         "is none that is known; use sine, rgb_sine, gray_code, ramp or flat");
     }
-    p.kind = *kind == "sine" ? PatternKind::sine : PatternKind::rgb_sine;
+    p.kind = *kind == "sine"       ? PatternKind::sine
+             : *kind == "rgb_sine" ? PatternKind::rgb_sine
+                                   : PatternKind::ramp;
     const auto period = map.number("period_px");
     if (!period) {
         return period.error();

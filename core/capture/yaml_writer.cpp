@@ -51,6 +51,7 @@ std::string pattern_text(const Pattern& p) {
                    ", bits: " + std::to_string(p.bits) + ", cell_px: " + real_text(p.cell_px) +
                    ", offset_px: " + real_text(p.offset_px) +
                    ", inverted: " + (p.inverted ? "1" : "0");
+        case PatternKind::ramp: return "kind: ramp, period_px: " + real_text(p.period_px);
         case PatternKind::flat: break;
     }
     return "kind: flat, level: " + real_text(p.level);

@@ -52,6 +52,7 @@ double intensity(const Pattern& p, double x_px, int channel) noexcept {
                    0.5 * std::cos(2.0 * std::numbers::pi * x_px / p.period_px + p.phase_rad[i]);
         }
         case PatternKind::gray_code: return gray_code_bit(p, x_px);
+        case PatternKind::ramp: return x_px / p.period_px - std::floor(x_px / p.period_px);
         case PatternKind::flat: break;
     }
     return p.level;

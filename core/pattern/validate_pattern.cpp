@@ -76,9 +76,11 @@ Result<void> check_pattern(const std::string& field, const Pattern& p) {
         case PatternKind::sine: return check_sine(field, p, 1);
         case PatternKind::rgb_sine: return check_sine(field, p, 3);
         case PatternKind::gray_code: return check_gray_code(field, p);
+        case PatternKind::ramp: return check_sine(field, p, 0);
         case PatternKind::flat: return check_number(field + ".level", p.level, 0.0, 1.0);
     }
-    return bad(field + ".kind", "none that is known", "use sine, rgb_sine, gray_code or flat");
+    return bad(field + ".kind", "none that is known",
+               "use sine, rgb_sine, gray_code, ramp or flat");
 }
 
 }  // namespace

@@ -25,60 +25,90 @@ Error malformed(std::string message) {
 
 double turned(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
 
+std::optional<PeriodKind> kind_of(PatternKind kind) {
+    switch (kind) {
+        case PatternKind::sine: return PeriodKind::steps;
+        case PatternKind::rgb_sine: return PeriodKind::colour;
+        case PatternKind::ramp: return PeriodKind::ramp;
+        case PatternKind::gray_code:
+        case PatternKind::flat: break;
+    }
+    return std::nullopt;
+}
+
+Result<void> complete(SinePlan& plan, const PatternSequence& sequence) {
+    if (plan.kind == PeriodKind::ramp || plan.kind == PeriodKind::carrier) {
+        return {};
+    }
+    auto taps = least_squares_taps(plan.phases_rad);
+    if (!taps) {
+        return malformed("period " + std::to_string(plan.period_px) +
+                         " px: " + taps.error().message);
+    }
+    plan.newest_taps = *taps;
+    plan.gamma = GammaCorrection(plan.newest_taps, plan.phases_rad, sequence.gamma.value_or(1.0));
+    return {};
+}
+
 Result<std::vector<SinePlan>> collect_sines(const PatternSequence& sequence) {
     std::vector<SinePlan> sines;
     for (std::size_t i = 0; i < sequence.patterns.size(); ++i) {
         const Pattern& pattern = sequence.patterns[i];
-        if (pattern.kind != PatternKind::sine && pattern.kind != PatternKind::rgb_sine) {
+        const std::optional<PeriodKind> kind = kind_of(pattern.kind);
+        if (!kind) {
             continue;
         }
-        const bool colour = pattern.kind == PatternKind::rgb_sine;
         auto same = std::find_if(sines.begin(), sines.end(), [&](const SinePlan& plan) {
-            return plan.colour == colour &&
+            return plan.kind == *kind &&
                    std::fabs(plan.period_px - pattern.period_px) <= kSamePeriod * pattern.period_px;
         });
         if (same == sines.end()) {
             same = sines.insert(sines.end(), SinePlan{});
             same->period_px = pattern.period_px;
-            same->colour = colour;
-        } else if (colour) {
-            return unsupported("entry " + std::to_string(i) +
-                               ": a second colour pattern of one period; use one");
+            same->kind = *kind;
+        } else if (*kind != PeriodKind::steps) {
+            return unsupported("entry " + std::to_string(i) + ": a second " +
+                               (*kind == PeriodKind::ramp ? "ramp" : "colour pattern") +
+                               " of one period; use one");
         }
         same->patterns.push_back(static_cast<int>(i));
-        if (colour) {
+        if (*kind == PeriodKind::colour) {
             same->phases_rad.assign(pattern.phase_rad.begin(), pattern.phase_rad.end());
         } else {
             same->phases_rad.push_back(pattern.phase_rad[0]);
         }
     }
+    if (sequence.patterns.size() == 1 && sines.size() == 1 &&
+        sines.front().kind == PeriodKind::steps) {
+        sines.front().kind = PeriodKind::carrier;
+    }
     for (SinePlan& plan : sines) {
-        auto taps = least_squares_taps(plan.phases_rad);
-        if (!taps) {
-            return malformed("period " + std::to_string(plan.period_px) +
-                             " px: " + taps.error().message);
+        if (auto ok = complete(plan, sequence); !ok) {
+            return ok.error();
         }
-        plan.newest_taps = *taps;
-        plan.gamma =
-            GammaCorrection(plan.newest_taps, plan.phases_rad, sequence.gamma.value_or(1.0));
     }
     std::sort(sines.begin(), sines.end(),
               [](const SinePlan& a, const SinePlan& b) { return a.period_px > b.period_px; });
     return sines;
 }
 
-Result<std::optional<GrayPlan>> collect_gray(const PatternSequence& sequence) {
+// The last flat patterns of full and of no light.
+void find_flats(const PatternSequence& sequence, DecodePlan& plan) {
+    for (std::size_t i = 0; i < sequence.patterns.size(); ++i) {
+        const Pattern& pattern = sequence.patterns[i];
+        if (pattern.kind == PatternKind::flat) {
+            const int index = static_cast<int>(i);
+            plan.white = pattern.level >= kWhiteLevel ? index : plan.white;
+            plan.black = pattern.level <= kBlackLevel ? index : plan.black;
+        }
+    }
+}
+
+Result<std::optional<GrayPlan>> collect_gray(const PatternSequence& sequence, bool flats) {
     std::optional<GrayPlan> gray;
-    int white = -1;
-    int black = -1;
     for (std::size_t i = 0; i < sequence.patterns.size(); ++i) {
         const Pattern& pattern = sequence.patterns[i];
         const int index = static_cast<int>(i);
-        if (pattern.kind == PatternKind::flat) {
-            white = pattern.level >= kWhiteLevel ? index : white;
-            black = pattern.level <= kBlackLevel ? index : black;
-            continue;
-        }
         if (pattern.kind != PatternKind::gray_code) {
             continue;
         }
@@ -101,8 +131,6 @@ Result<std::optional<GrayPlan>> collect_gray(const PatternSequence& sequence) {
     if (!gray) {
         return gray;
     }
-    gray->white = white;
-    gray->black = black;
     bool all_inverted = true;
     for (int bit = 0; bit < gray->bits; ++bit) {
         const auto b = static_cast<std::size_t>(bit);
@@ -112,7 +140,7 @@ Result<std::optional<GrayPlan>> collect_gray(const PatternSequence& sequence) {
         }
         all_inverted = all_inverted && gray->inverse[b] >= 0;
     }
-    if (!all_inverted && (white < 0 || black < 0)) {
+    if (!all_inverted && !flats) {
         return unsupported(
             "a Gray code needs flat patterns of level 1 and 0, or every bit inverted as well, to "
             "tell dark skin from a dark stripe");
@@ -135,9 +163,10 @@ Result<std::optional<CyclePlan>> find_cycle(const SinePlan& sine, int pattern_co
     switch (choice) {
         case PhaseTaps::least_squares: return std::optional<CyclePlan>{};
         case PhaseTaps::automatic:
-            if (!even || length != 3) {
+            if (!even || (length != 3 && length != 4)) {
                 return std::optional<CyclePlan>{};
             }
+            design = length == 3 ? TapDesign::three_plus_two : TapDesign::four_plus_one;
             break;
         case PhaseTaps::three_plus_one: design = TapDesign::three_plus_one; break;
         case PhaseTaps::three_plus_two: break;
@@ -163,7 +192,7 @@ Result<std::optional<CyclePlan>> find_cycle(const SinePlan& sine, int pattern_co
 Result<void> check_colours(const std::vector<SinePlan>& sines) {
     double direction = 0.0;
     for (const SinePlan& sine : sines) {
-        if (!sine.colour) {
+        if (sine.kind != PeriodKind::colour) {
             if (direction != 0.0) {
                 return unsupported(
                     "a grey period is shorter than its colour periods; colour must "
@@ -190,6 +219,7 @@ Result<DecodePlan> DecodePlan::create(const PatternSequence& sequence,
     }
     DecodePlan plan;
     plan.axis = sequence.axis;
+    plan.gamma = sequence.gamma.value_or(1.0);
     plan.coded_length_px = sequence.coded_length_px();
     plan.pattern_count = static_cast<int>(sequence.patterns.size());
     auto sines = collect_sines(sequence);
@@ -197,22 +227,33 @@ Result<DecodePlan> DecodePlan::create(const PatternSequence& sequence,
         return sines.error();
     }
     plan.sines = *std::move(sines);
-    auto gray = collect_gray(sequence);
+    find_flats(sequence, plan);
+    const bool flats = plan.white >= 0 && plan.black >= 0;
+    auto gray = collect_gray(sequence, flats);
     if (!gray) {
         return gray.error();
     }
     plan.gray = *gray;
     if (plan.sines.empty() && !plan.gray) {
-        return unsupported("it has neither sines nor a Gray code; nothing in it codes position");
+        return unsupported(
+            "it has neither sines, ramps nor a Gray code; nothing in it codes position");
     }
     if (plan.gray && !plan.sines.empty() &&
         plan.gray->cell_px > plan.sines.front().period_px * (1.0 + kSamePeriod)) {
         return unsupported("Gray code cells wider than the longest period leave its order open");
     }
+    const bool ramps = std::any_of(plan.sines.begin(), plan.sines.end(), [](const SinePlan& sine) {
+        return sine.kind == PeriodKind::ramp;
+    });
+    if (ramps && !flats) {
+        return unsupported(
+            "a ramp is measured between a white and a black image; add flat "
+            "patterns of level 1 and 0");
+    }
     if (auto colours = check_colours(plan.sines); !colours) {
         return colours.error();
     }
-    if (plan.sines.size() == 1 && !plan.sines.front().colour) {
+    if (plan.sines.size() == 1 && plan.sines.front().kind == PeriodKind::steps) {
         auto cycle = find_cycle(plan.sines.front(), plan.pattern_count, settings.taps);
         if (!cycle) {
             return cycle.error();
@@ -223,25 +264,25 @@ Result<DecodePlan> DecodePlan::create(const PatternSequence& sequence,
             "the chosen taps need a sequence of one grey period; choose least_squares");
     }
     for (const Pattern& pattern : sequence.patterns) {
-        const bool sine =
-            pattern.kind == PatternKind::sine || pattern.kind == PatternKind::rgb_sine;
-        plan.pattern_phase_rad.push_back(sine ? pattern.phase_rad[0] : 0.0);
+        plan.pattern_phase_rad.push_back(kind_of(pattern.kind) ? pattern.phase_rad[0] : 0.0);
     }
     for (const SinePlan& sine : plan.sines) {
         plan.needed.insert(plan.needed.end(), sine.patterns.begin(), sine.patterns.end());
     }
+    const auto add = [&](int pattern) {
+        if (pattern >= 0) {
+            plan.needed.push_back(pattern);
+        }
+    };
+    if (plan.gray || ramps) {
+        add(plan.white);
+        add(plan.black);
+    }
     if (plan.gray) {
-        const auto add = [&](int pattern) {
-            if (pattern >= 0) {
-                plan.needed.push_back(pattern);
-            }
-        };
         for (int bit = 0; bit < plan.gray->bits; ++bit) {
             add(plan.gray->image[static_cast<std::size_t>(bit)]);
             add(plan.gray->inverse[static_cast<std::size_t>(bit)]);
         }
-        add(plan.gray->white);
-        add(plan.gray->black);
     }
     std::sort(plan.needed.begin(), plan.needed.end());
     return plan;

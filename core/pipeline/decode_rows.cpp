@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <complex>
 #include <limits>
+#include <numbers>
 #include <span>
 
 #include "core/decode/decode_row.hpp"
@@ -30,7 +32,10 @@ bool DepthDecoder::Impl::choose_images(std::size_t sine, int y, Images& images) 
             return true;
         }
     }
-    if (period.colour) {
+    if (period.kind == PeriodKind::carrier) {
+        return choose_carrier_image(period, y, images);
+    }
+    if (period.kind == PeriodKind::colour) {
         choose_colour_images(period, y, images);
         return images.taps.count > 0;
     }
@@ -58,6 +63,14 @@ bool DepthDecoder::Impl::choose_images(std::size_t sine, int y, Images& images) 
     return true;
 }
 
+bool DepthDecoder::Impl::choose_carrier_image(const SinePlan& period, int y,
+                                              Images& images) const noexcept {
+    const Frame* frame = window.clean(period.patterns.front(), y);
+    images.taps = carrier;
+    images.frames.fill(frame);
+    return frame != nullptr && carrier.count > 0;
+}
+
 void DepthDecoder::Impl::choose_colour_images(const SinePlan& period, int y,
                                               Images& images) const noexcept {
     std::array<const Frame*, FrameWindow::kFramesPerShow> frames{};
@@ -83,8 +96,33 @@ const std::uint8_t* DepthDecoder::Impl::grey_row(const Frame& frame, int y,
     return grey;
 }
 
+// A ramp's grey value between black and white, as a phase.
+void DepthDecoder::Impl::decode_ramp_row(std::size_t sine, int y, const RowOut& out) noexcept {
+    const SinePlan& period = plan.sines[sine];
+    const std::uint8_t* ramp = grey_row(*window.clean(period.patterns.front(), y), y, 0);
+    const std::uint8_t* white = grey_row(*window.clean(plan.white, y), y, 1);
+    const std::uint8_t* black = grey_row(*window.clean(plan.black, y), y, 2);
+    constexpr float kTurn = 2.0F * std::numbers::pi_v<float>;
+    for (int x = 0; x < size.width; ++x) {
+        const float range = static_cast<float>(white[x]) - static_cast<float>(black[x]);
+        const bool good = range >= 2.0F * static_cast<float>(settings.min_modulation) &&
+                          (white[x] < kClipped || !settings.mask_saturated);
+        const float light = static_cast<float>(ramp[x] - black[x]) / std::max(range, 1.0F);
+        float share = std::clamp(light, 0.0F, 1.0F);
+        if (ramp_exponent != 1.0F) {
+            share = std::pow(share, ramp_exponent);
+        }
+        out.phase[x] = good ? (share > 0.5F ? share - 1.0F : share) * kTurn : kNone;
+        out.modulation[x] = good ? 0.5F * range : 0.0F;
+    }
+}
+
 void DepthDecoder::Impl::decode_sine_row(std::size_t sine, const Images& images, int y,
                                          const RowOut& out) noexcept {
+    if (plan.sines[sine].kind == PeriodKind::ramp) {
+        decode_ramp_row(sine, y, out);
+        return;
+    }
     const auto count = static_cast<std::size_t>(images.taps.count);
     // Columns in which every shifted image has a pixel.
     int begin = 0;
@@ -113,7 +151,7 @@ void DepthDecoder::Impl::decode_sine_row(std::size_t sine, const Images& images,
         row.phase_rad = out.phase + begin;
         row.modulation = out.modulation + begin;
     };
-    if (plan.sines[sine].colour) {
+    if (plan.sines[sine].kind == PeriodKind::colour) {
         RgbRow row;
         fill(row);
         row.frames = count;
@@ -156,8 +194,8 @@ void DepthDecoder::Impl::decode_gray_row(int y, float* coordinate_px, float* mod
         row.image[bit] = source(gray.image[bit]);
         row.inverse[bit] = source(gray.inverse[bit]);
     }
-    row.white = source(gray.white);
-    row.black = source(gray.black);
+    row.white = source(plan.white);
+    row.black = source(plan.black);
     row.cell_px = gray.cell_px;
     row.offset_px = gray.offset_px;
     row.min_modulation = static_cast<float>(settings.min_modulation);
@@ -220,6 +258,14 @@ void DepthDecoder::Impl::decode_row_chain(const std::vector<Images>& chain, int 
 
 void DepthDecoder::Impl::average_row(const Images& images, int y) noexcept {
     float* mean = average.row(y);
+    if (plan.sines.back().kind == PeriodKind::ramp) {
+        const std::uint8_t* white = grey_row(*window.clean(plan.white, y), y, 0);
+        const std::uint8_t* black = grey_row(*window.clean(plan.black, y), y, 1);
+        for (int i = 0; i < size.width; ++i) {
+            mean[i] = 0.5F * static_cast<float>(white[i] + black[i]);
+        }
+        return;
+    }
     std::fill(mean, mean + size.width, 0.0F);
     const float weight = 1.0F / static_cast<float>(images.taps.count);
     for (std::size_t n = 0; n < static_cast<std::size_t>(images.taps.count); ++n) {
@@ -281,7 +327,7 @@ void DepthDecoder::Impl::decode_rows(int begin, int end) noexcept {
         mask_rows(begin, end);
         return;
     }
-    if (plan.gray) {
+    if (plan.gray || plan.white >= 0) {
         for (const int pattern : plan.needed) {
             oldest_image = std::min(oldest_image, window.clean(pattern, begin)->stamp);
         }

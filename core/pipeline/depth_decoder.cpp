@@ -12,6 +12,7 @@
 
 #include "core/base/setting_up.hpp"
 #include "core/decode/decode_row.hpp"
+#include "core/decode/luma.hpp"
 #include "core/pipeline/depth_decoder_impl.hpp"
 #include "core/unwrap/gray_code.hpp"
 
@@ -19,6 +20,8 @@ namespace xtrack {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+// For the direction in which coordinates grow, which is the same at all depths.
+constexpr double kAnyDepth_mm = 1000.0;
 
 }  // namespace
 
@@ -28,7 +31,8 @@ DepthDecoder::Impl::Impl(DecodePlan decode_plan, const DecodeSettings& decode_se
       size(image),
       window(plan.pattern_count),
       still(plan.sines.size()),
-      following(plan.sines.size()) {}
+      following(plan.sines.size()),
+      ramp_exponent(static_cast<float>(plan.gamma > 0.0 ? 1.0 / plan.gamma : 1.0)) {}
 
 Result<void> DepthDecoder::Impl::prepare(const Rig& rig) {
     if (settings.order != OrderSource::none) {
@@ -37,6 +41,16 @@ Result<void> DepthDecoder::Impl::prepare(const Rig& rig) {
             return made.error();
         }
         geometry.emplace(*std::move(made));
+    }
+    if (plan.carrier() && geometry) {
+        const double u = 0.5 * size.width;
+        const double v = 0.5 * size.height;
+        const bool down = plan.axis == Axis::y;
+        carrier_sign =
+            geometry->coordinate_of_depth(u + (down ? 0 : 1), v + (down ? 1 : 0), kAnyDepth_mm) <
+                    geometry->coordinate_of_depth(u, v, kAnyDepth_mm)
+                ? -1.0
+                : 1.0;
     }
     if (plan.colour()) {
         if (auto made = prepare_colours(rig); !made) {
@@ -73,11 +87,14 @@ Result<void> DepthDecoder::Impl::prepare(const Rig& rig) {
             coordinate.resize(size.width, size.height);
         }
     }
+    if (plan.carrier()) {
+        carrier_grey.resize(size.width, size.height);
+    }
     for (Image<float>* row : {&row_phase, &row_modulation, &row_coordinate, &row_reference,
                               &row_ideal, &moving_phase, &moving_modulation, &moving_coordinate}) {
         row->resize(size.width, 1);
     }
-    if (settings.motion != MotionHandling::off && !plan.gray) {
+    if (settings.motion != MotionHandling::off && plan.motion_matters()) {
         MotionEstimator::Settings motion_settings;
         motion_settings.max_shift_px = settings.max_motion_px;
         motion.emplace(size, plan.pattern_count, motion_settings);
@@ -130,6 +147,9 @@ DecodeStatus DepthDecoder::Impl::push(const FramePtr& frame) noexcept {
     if (palette) {
         tell_surfaces();
     }
+    if (plan.carrier()) {
+        find_carrier(*frame);
+    }
     const std::span<const int> edges = window.row_edges(size.height);
     for (std::size_t n = 0; n + 1 < edges.size(); ++n) {
         decode_rows(edges[n], edges[n + 1]);
@@ -139,6 +159,21 @@ DecodeStatus DepthDecoder::Impl::push(const FramePtr& frame) noexcept {
     }
     register_depth(*frame);
     return {DecodeState::depth_ready, RejectReason::none};
+}
+
+void DepthDecoder::Impl::find_carrier(const Frame& frame) noexcept {
+    const bool down = plan.axis == Axis::y;
+    ImageView<const std::uint8_t> grey = frame.pixels.view();
+    if (frame.format == PixelFormat::bgr8) {
+        for (int y = 0; y < size.height; ++y) {
+            luma_row(frame.pixels.row(y), size.width, carrier_grey.row(y));
+        }
+        grey = std::as_const(carrier_grey).view();
+    }
+    if (const double period_px = find_carrier_px(grey, down); period_px > 0.0) {
+        carrier =
+            carrier_taps(carrier_sign * period_px, down, plan.sines.front().phases_rad.front());
+    }
 }
 
 void DepthDecoder::Impl::register_depth(const Frame& newest) noexcept {
@@ -258,6 +293,7 @@ void DepthDecoder::reset() noexcept {
     if (impl_->palette) {
         impl_->palette->clear();
     }
+    impl_->carrier.count = 0;
     impl_->last_stamp.reset();
 }
 

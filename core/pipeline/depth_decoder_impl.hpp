@@ -7,6 +7,7 @@
 
 #include <xtrack/depth_decoder.hpp>
 
+#include "core/decode/carrier.hpp"
 #include "core/decode/colour_palette.hpp"
 #include "core/decode/taps.hpp"
 #include "core/depth/triangulation.hpp"
@@ -42,9 +43,12 @@ struct DepthDecoder::Impl {
     void decode_rows(int begin, int end) noexcept;
     void mask_rows(int begin, int end) noexcept;
     bool choose_images(std::size_t sine, int y, Images& images) const noexcept;
+    bool choose_carrier_image(const SinePlan& period, int y, Images& images) const noexcept;
+    void find_carrier(const Frame& frame) noexcept;
     void choose_colour_images(const SinePlan& period, int y, Images& images) const noexcept;
     const std::uint8_t* grey_row(const Frame& frame, int y, std::size_t buffer) noexcept;
     void decode_sine_row(std::size_t sine, const Images& images, int y, const RowOut& out) noexcept;
+    void decode_ramp_row(std::size_t sine, int y, const RowOut& out) noexcept;
     void decode_gray_row(int y, float* coordinate, float* modulation) noexcept;
     /// Decodes and unwraps every period; out.coordinate is not touched without geometry.
     void decode_row_chain(const std::vector<Images>& chain, int y, const RowOut& out) noexcept;
@@ -79,6 +83,9 @@ struct DepthDecoder::Impl {
     std::optional<MotionEstimator> motion;
     std::optional<ColourPalette> palette;  // only where the sequence has colour fringes
     ColourModel colours;
+    TapSet carrier;                    // of a sequence of one grey sine; empty: none found yet
+    Image<std::uint8_t> carrier_grey;  // a colour frame's luma
+    double carrier_sign = 1.0;         // -1: the phase falls with the pixel's index
     std::optional<Triangulation> geometry;
     OrderReference order;
     Image<float> order_px;  // from set_order_depth()
@@ -94,6 +101,7 @@ struct DepthDecoder::Impl {
     double moving_depth_mm = 0.0;      // of what moves; 0: unknown
     double drift_rad_per_cycle = 0.0;  // of the shortest period, at what moves
     std::vector<std::uint16_t> moving_depths;
+    float ramp_exponent = 1.0F;  // of a ramp's light that gives its value
     // Scratch rows, small enough to stay in the first-level cache.
     Image<float> row_phase, row_modulation, row_coordinate, row_reference, row_ideal, row_rays;
     Image<float> moving_phase, moving_modulation, moving_coordinate;

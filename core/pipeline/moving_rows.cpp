@@ -83,7 +83,7 @@ void DepthDecoder::Impl::follow_images() noexcept {
                              std::fabs(drift_rad) / back_s * motion->seconds_per_cycle());
             }
         }
-        if (period.colour) {
+        if (period.kind == PeriodKind::colour) {
             for (std::size_t n = 0; n < count; ++n) {
                 const auto turn =
                     std::complex<double>(moved.taps.taps[n].re, moved.taps.taps[n].im) *

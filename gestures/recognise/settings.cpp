@@ -86,6 +86,22 @@ Error refuse(const std::string& what) {
 
 }  // namespace
 
+GestureDemands demands_of(const GestureSettings& settings) noexcept {
+    GestureDemands demands;
+    if (settings.swipe) {
+        demands.hand_mmps = std::max(demands.hand_mmps, settings.swipe_speed_mmps);
+    }
+    if (settings.push) {
+        demands.hand_mmps = std::max(demands.hand_mmps, settings.push_speed_mmps);
+    }
+    if (settings.pinch) {
+        // It begins at rest, and is an aperture of so many mm.
+        demands.hand_mmps = std::max(demands.hand_mmps, settings.pinch_palm_mmps);
+        demands.metric = true;
+    }
+    return demands;
+}
+
 Result<void> validate(const GestureSettings& s) {
     for (const Range& r : kRanges) {
         const double value = s.*r.value;

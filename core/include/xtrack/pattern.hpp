@@ -18,7 +18,13 @@ namespace xtrack {
 /// The projector axis that a pattern codes: intensities change along it only.
 enum class Axis { x, y };
 
-enum class PatternKind { sine, rgb_sine, gray_code, flat };
+enum class PatternKind {
+    sine,
+    rgb_sine,
+    gray_code,
+    flat,
+    ramp,  ///< from dark to light within each period, then dark again
+};
 
 /// What the projector shows in one refresh. Intensities are 0..1 of full light, before gamma;
 /// x is the projector pixel index along the coded axis, 0 at the centre of the first pixel.
@@ -28,6 +34,7 @@ struct Pattern {
     PatternKind kind = PatternKind::flat;
     /// sine, rgb_sine: I(x) = 0.5 + 0.5 cos(2 pi x / period_px + phase_rad)
     double period_px = 0.0;
+    /// ramp: I(x) = x / period_px - floor(x / period_px)
     /// sine: [0] alone. rgb_sine: red, green, blue.
     std::array<double, 3> phase_rad{};
     /// gray_code: bit 0 is the most significant of `bits`; cell = floor((x + offset_px) / cell_px)

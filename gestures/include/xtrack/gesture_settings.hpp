@@ -127,6 +127,18 @@ struct GestureSettings {
     double pinch_index_share = 0.25;
 };
 
+/// What enabled gestures ask of the depth images they are seen in.
+/// @since 0.1
+struct GestureDemands {
+    double hand_mmps = 0.0;  ///< the slowest movement that is a gesture must be followed; the
+                             ///< fastest such threshold of all
+    bool metric = false;     ///< lengths in mm decide: relative depth will not do
+};
+
+/// @thread any
+/// @since 0.1
+[[nodiscard]] GestureDemands demands_of(const GestureSettings& settings) noexcept;
+
 /// Checks every range and the relations between them.
 /// @return invalid_argument that names the setting, its value and its range
 /// @thread any

@@ -140,6 +140,16 @@ TEST(PatternYaml, WhatIsWrittenReadsBack) {
     }
 }
 
+TEST(PatternYaml, RampsReadBack) {
+    PatternSequence s = dual_sequence(Axis::x, {1024, 768}, 320.0, 32.0);
+    s.patterns[0] = {};
+    s.patterns[0].kind = PatternKind::ramp;
+    s.patterns[0].period_px = 256.0;
+    const auto back = parse_patterns(patterns_text(s), "pattern.yaml");
+    ASSERT_TRUE(back.ok()) << back.error().message;
+    EXPECT_EQ(*back, s);
+}
+
 TEST(PatternYaml, BadFieldsAreNamed) {
     const std::string good = patterns_text(dual_sequence(Axis::y, {1024, 768}, 320.0, 32.0));
     EXPECT_THAT(pattern_message(replaced(good, "axis: y", "axis: z")),

@@ -292,6 +292,73 @@ TEST(DepthDecoder, SizesThatNoImageHasAreRefused) {
     }
 }
 
+PatternSequence ramps(bool four) {
+    PatternSequence s = wide();
+    Pattern white;
+    white.level = 1.0;
+    Pattern ramp;
+    ramp.kind = PatternKind::ramp;
+    ramp.period_px = 512.0;
+    s.patterns = {white, Pattern{}, ramp};
+    if (four) {
+        ramp.period_px = 128.0;
+        s.patterns.push_back(ramp);
+    }
+    return s;
+}
+
+double mean_error_mm(const DepthFrame& depth, double z_mm) {
+    double sum = 0.0;
+    double count = 0.0;
+    for (int y = 0; y < depth.depth.height(); ++y) {
+        for (int x = 0; x < depth.depth.width(); ++x) {
+            if (depth.depth.at(x, y) != 0) {
+                sum += std::fabs(depth.depth.at(x, y) * 0.1 - z_mm);
+                count += 1.0;
+            }
+        }
+    }
+    return sum / count;
+}
+
+// 8 bits for 512 px are half a level a pixel: four ramps are four times finer.
+TEST(Ramps, GiveTheWallAsWellAsEightBitsCan) {
+    double errors_mm[2] = {};
+    for (const bool four : {false, true}) {
+        const PatternSequence patterns = ramps(four);
+        DepthDecoder decoder = make(patterns);
+        for (int n = 0; n < decoder.frames_needed(); ++n) {
+            decoder.push(plane_frame(plane_rig(), patterns, n, n, kWall));
+        }
+        EXPECT_GT(score(decoder.depth(), kWall).good + score(decoder.depth(), kWall).none,
+                  four ? 0.9 : 0.3);
+        errors_mm[four ? 1 : 0] = mean_error_mm(decoder.depth(), kWall);
+    }
+    EXPECT_LT(errors_mm[0], 15.0);
+    EXPECT_LT(errors_mm[1], 0.4 * errors_mm[0]);
+}
+
+TEST(Ramps, NeedWhiteAndBlack) {
+    PatternSequence patterns = ramps(false);
+    patterns.patterns.erase(patterns.patterns.begin());
+    const auto made = DepthDecoder::create(plane_rig(), patterns, plane_rig().camera.size, {});
+    ASSERT_FALSE(made);
+    EXPECT_NE(made.error().message.find("white and a black"), std::string::npos);
+}
+
+TEST(Steps, FourGiveTheWallWhereverTheWindowStarts) {
+    const PatternSequence four = n_step_sequence(Axis::x, {512, 384}, 512.0, 4);
+    DepthDecoder decoder = make(four);
+    for (int n = 0; n < 11; ++n) {
+        const DecodeStatus status =
+            decoder.push(plane_frame(plane_rig(), four, (n + 2) % 4, n, kWall));
+        if (n >= 4) {
+            ASSERT_EQ(status.state, DecodeState::depth_ready);
+            ASSERT_GT(score(decoder.depth(), kWall).good, 0.97) << n;
+        }
+    }
+}
+
 // Colour fringes: one image is a phase, the other its order.
 PatternSequence rgb() { return rgb_sequence(Axis::x, {512, 384}, {512.0, 64.0}); }
 

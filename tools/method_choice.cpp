@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/method_choice.hpp"
+
+namespace xtrack::tools {
+
+namespace {
+
+std::string known_methods() {
+    std::string names = "auto";
+    for (const MethodInfo& one : methods()) {
+        names += std::string(", ") + one.name;
+    }
+    return names;
+}
+
+}  // namespace
+
+Result<SimSettings> preset_of(const std::string& source) {
+    if (source == "sim") {
+        return SimSettings::preset("ideal-60");
+    }
+    constexpr std::string_view kPrefix = "sim:";
+    if (source.starts_with(kPrefix)) {
+        return SimSettings::preset(source.substr(kPrefix.size()));
+    }
+    return Error{ErrorCode::invalid_argument,
+                 source + ": only the simulator can be asked; use sim or sim:PRESET"};
+}
+
+MethodNeeds needs_of(const SimSettings& settings, const GestureSettings& gestures) {
+    const GestureDemands demands = demands_of(gestures);
+    MethodNeeds needs;
+    needs.colour = settings.camera.colour;
+    needs.frame_hz = settings.camera.frame_hz;
+    needs.hold_frames = settings.clocks.locked ? 1 : settings.clocks.hold_frames;
+    needs.metric = demands.metric;
+    needs.hand_mmps = demands.hand_mmps;
+    return needs;
+}
+
+Result<MethodVerdict> show_method(const std::string& name, const GestureSettings& gestures,
+                                  SimSettings& settings) {
+    const MethodNeeds needs = needs_of(settings, gestures);
+    MethodVerdict verdict;
+    if (name == "auto") {
+        auto chosen = choose_method(needs);
+        if (!chosen) {
+            return chosen.error();
+        }
+        verdict = *chosen;
+    } else {
+        const auto method = method_of(name);
+        if (!method) {
+            return Error{ErrorCode::invalid_argument,
+                         "--method " + name + ": not a method; choose from " + known_methods()};
+        }
+        verdict = judge(*method, needs);
+        if (!verdict.possible) {
+            return Error{ErrorCode::unsupported,
+                         "--method " + name + ": " + verdict.reason +
+                             "; choose another method, or fewer gestures with --gestures"};
+        }
+    }
+    auto sequence = method_sequence(verdict.method, settings.rig, settings.patterns.axis);
+    if (!sequence) {
+        return sequence.error();
+    }
+    const auto gamma = settings.patterns.gamma;
+    settings.patterns = *std::move(sequence);
+    settings.patterns.gamma = gamma;
+    return verdict;
+}
+
+}  // namespace xtrack::tools
