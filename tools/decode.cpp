@@ -28,6 +28,7 @@
 #include "tools/interrupt.hpp"
 #include "tools/order_depth.hpp"
 #include "tools/progress.hpp"
+#include "tools/settings_option.hpp"
 #include "tools/stream.hpp"
 
 namespace xtrack::tools {
@@ -45,6 +46,7 @@ struct DecodeOptions {
     std::set<Export> exports{Export::ply};
     bool json = false;
     double min_modulation = DecodeSettings{}.min_modulation;
+    std::vector<std::string> changes;  // of settings
 };
 
 // Of one of the three names that the option takes.
@@ -99,11 +101,14 @@ bool stems_name_folders(const RecordingReader& recording) {
 Result<Chosen> choose_decoder(const RecordingReader& recording, const PatternSequence& patterns,
                               const DecodeOptions& options) {
     DecodeSettings settings;
-    settings.keep_maps = true;
     settings.min_modulation = options.min_modulation;
     // One set of patterns is all there is to the first depth; a stream has more to average over.
     settings.taps = options.all ? PhaseTaps::automatic : PhaseTaps::least_squares;
     settings.motion = options.all ? MotionHandling::follow : MotionHandling::off;
+    if (const auto set = apply_settings(options.changes, settings); !set) {
+        return set.error();
+    }
+    settings.keep_maps = true;
     const auto create = [&](OrderSource order) {
         settings.order = order;
         return DepthDecoder::create(recording.rig(), patterns, recording.image_size(), settings);
@@ -430,6 +435,7 @@ void add_decode(CLI::App& app, int& exit_status) {
         ->add_option("--min-modulation", options->min_modulation,
                      "Fringe amplitude below which a pixel is masked, grey levels")
         ->capture_default_str();
+    add_settings_option(*command, options->changes);
     command->add_option(
         "--gamma", options->gamma,
         "The projector's response, light = value^gamma: a number, or auto to find it "
@@ -452,9 +458,11 @@ void add_decode(CLI::App& app, int& exit_status) {
     command->callback([options, &exit_status] {
         DecodeSettings settings;
         settings.min_modulation = options->min_modulation;
-        if (const auto ok = validate(settings); !ok) {
-            exit_status = usage(ok.error());
-            return;
+        for (const auto& ok : {validate(settings), apply_settings(options->changes, settings)}) {
+            if (!ok) {
+                exit_status = usage(ok.error());
+                return;
+            }
         }
         if (const std::string why = gamma_complaint(options->gamma); !why.empty()) {
             exit_status = usage({ErrorCode::invalid_argument, why});

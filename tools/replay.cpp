@@ -6,6 +6,7 @@
 #include <xtrack/recording.hpp>
 
 #include "tools/commands.hpp"
+#include "tools/settings_option.hpp"
 #include "tools/stream.hpp"
 
 namespace xtrack::tools {
@@ -22,6 +23,10 @@ void add_replay(CLI::App& app, int& exit_status) {
         options.pace = Pace::replay;
         if (const auto chosen = choose_gestures(stream->gestures, options.gestures); !chosen) {
             exit_status = usage(chosen.error());
+            return;
+        }
+        if (const auto set = apply_settings(stream->changes, options.decode); !set) {
+            exit_status = usage(set.error());
             return;
         }
         auto session = Session::open(*folder, options);

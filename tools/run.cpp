@@ -10,6 +10,7 @@
 
 #include "tools/commands.hpp"
 #include "tools/method_choice.hpp"
+#include "tools/settings_option.hpp"
 #include "tools/stream.hpp"
 
 namespace xtrack::tools {
@@ -82,6 +83,10 @@ void add_run(CLI::App& app, int& exit_status) {
         options.pace = Pace::own_pace;
         if (const auto chosen = choose_gestures(run->stream.gestures, options.gestures); !chosen) {
             exit_status = usage(chosen.error());
+            return;
+        }
+        if (const auto set = apply_settings(run->stream.changes, options.decode); !set) {
+            exit_status = usage(set.error());
             return;
         }
         auto session = open(*run, options);

@@ -14,6 +14,7 @@
 
 #include "tools/interrupt.hpp"
 #include "tools/progress.hpp"
+#include "tools/settings_option.hpp"
 
 namespace xtrack::tools {
 
@@ -82,6 +83,7 @@ void add_stream_options(CLI::App& command, StreamOptions& options) {
             "joints: the user's, as events are): jsonl or none")
         ->check(CLI::IsMember({"jsonl", "none"}))
         ->default_str("none");
+    add_settings_option(command, options.changes);
     command.add_flag("--stats", options.statistics,
                      "At the end, print the time of every stage on stderr");
     command.add_flag("--json", options.json, "Events as jsonl, and --stats as JSON");

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/App.hpp>
 #include <xtrack/recording.hpp>
@@ -18,6 +19,7 @@ struct StreamOptions {
     std::optional<std::string> gestures;
     EventFormat events = EventFormat::text;
     EventFormat hands = EventFormat::none;
+    std::vector<std::string> changes;  ///< of the decoder's settings, NAME=VALUE
     bool statistics = false;
     bool json = false;
 };

@@ -9,6 +9,7 @@
 #include "core/decode/decode_row.hpp"
 #include "core/decode/luma.hpp"
 #include "core/decode/rgb_row.hpp"
+#include "core/depth/sigma_row.hpp"
 #include "core/pipeline/depth_decoder_impl.hpp"
 #include "core/unwrap/gray_code.hpp"
 #include "core/unwrap/unwrap_row.hpp"
@@ -286,6 +287,9 @@ void DepthDecoder::Impl::mask_rows(int begin, int end) noexcept {
             }
             std::fill_n(phase_map.modulation.row(y), size.width, 0.0F);
             std::fill_n(average.row(y), size.width, 0.0F);
+            if (!sigma.empty()) {
+                std::fill_n(sigma.row(y), size.width, 0.0F);
+            }
             if (!coordinate.empty()) {
                 std::fill_n(coordinate.row(y), size.width, kNone);
             }
@@ -313,6 +317,35 @@ void DepthDecoder::Impl::triangulate_row(int y, const RowOut& out) noexcept {
     row.depth = depth.depth.row(y);
     row.quality = depth.quality.row(y);
     depth_row(row);
+    if (!sigma.empty()) {
+        noise_gain_row(y, row_ideal.row(0));
+        SigmaRow noise;
+        noise.mean = average.row(y);
+        noise.noise_gain = row_ideal.row(0);
+        noise.period_px = static_cast<float>(plan.sines.back().period_px);
+        noise.read_noise_levels = static_cast<float>(settings.read_noise_levels);
+        noise.electrons_per_level = static_cast<float>(settings.electrons_per_level);
+        noise.sigma_mm = sigma.row(y);
+        sigma_row(row, noise);
+    }
+}
+
+// Of the phase that gives the coordinate.
+void DepthDecoder::Impl::noise_gain_row(int y, float* gain) const noexcept {
+    if (!palette) {
+        std::fill_n(gain, size.width, static_cast<float>(still.back().taps.noise_gain()));
+        return;
+    }
+    constexpr int kFine = ColourPalette::kFineStepPx;
+    const std::uint8_t* surfaces = palette->surfaces().row(y / kFine);
+    const auto frames = static_cast<float>(std::max(still.back().taps.count, 1));
+    for (int x = 0; x < size.width; ++x) {
+        float power = 0.0F;
+        for (const float tap : palette->taps(surfaces[x / kFine])) {
+            power += tap * tap;
+        }
+        gain[x] = std::sqrt(0.5F * power / frames);
+    }
 }
 
 void DepthDecoder::Impl::decode_rows(int begin, int end) noexcept {

@@ -1,33 +1,153 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <xtrack/decode_settings.hpp>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
 #include <string>
+#include <type_traits>
+
+#include "core/base/text.hpp"
 
 namespace xtrack {
 namespace {
 
-Result<void> in_range(const char* name, double value, double low, double high) {
-    if (value >= low && value <= high) {  // false for NaN
-        return {};
+constexpr std::array<const char*, 2> kSwitch{"off", "on"};
+constexpr std::array<const char*, 5> kTaps{"automatic", "least_squares", "three_plus_one",
+                                           "three_plus_two", "four_plus_one"};
+constexpr std::array<const char*, 3> kOrders{"automatic", "depth_image", "none"};
+constexpr std::array<const char*, 3> kMotions{"off", "mask", "follow"};
+
+// One way to read and write every type of field.
+template <auto kMember>
+double get(const DecodeSettings& settings) {
+    return static_cast<double>(settings.*kMember);
+}
+template <auto kMember>
+void set(DecodeSettings& settings, double value) {
+    using Value = std::remove_reference_t<decltype(settings.*kMember)>;
+    if constexpr (std::is_same_v<Value, double>) {
+        settings.*kMember = value;
+    } else {
+        settings.*kMember = static_cast<Value>(static_cast<int>(value));
     }
-    return Error{ErrorCode::invalid_argument,
-                 std::string("decode settings: ") + name + " is " + std::to_string(value) +
-                     ", must be " + std::to_string(low) + " ... " + std::to_string(high)};
+}
+
+template <auto kMember>
+constexpr DecodeField number(const char* name, const char* unit, double least, double most,
+                             const char* summary) {
+    return {name, unit, summary, least, most, false, {}, get<kMember>, set<kMember>};
+}
+template <auto kMember>
+constexpr DecodeField choice(const char* name, std::span<const char* const> choices,
+                             const char* summary) {
+    return {name, "",      summary,      0.0,         static_cast<double>(choices.size() - 1),
+            true, choices, get<kMember>, set<kMember>};
+}
+
+using S = DecodeSettings;
+constexpr std::array<DecodeField, 12> kFields{{
+    number<&S::min_modulation>("min_modulation", "grey levels", 0.0, 127.0,
+                               "pixels of less fringe amplitude are masked"),
+    choice<&S::mask_saturated>("mask_saturated", kSwitch, "mask pixels that reach 255"),
+    choice<&S::taps>("taps", kTaps, "how images of one period become a phase"),
+    choice<&S::order>("order", kOrders, "where the fringe order comes from"),
+    number<&S::order_tolerance>("order_tolerance", "periods", 0.05, 0.5,
+                                "pixels whose order is less sure are masked"),
+    number<&S::gray_edge_guard>("gray_edge_guard", "of white - black", 0.0, 0.45,
+                                "Gray code bits nearer to their threshold are masked"),
+    choice<&S::motion>("motion", kMotions, "what is done about things that move"),
+    number<&S::motion_tolerance>("motion_tolerance", "amplitudes", 0.05, 10.0,
+                                 "pixels that change by more between two cycles are masked"),
+    {"max_motion_px",
+     "px",
+     "largest move within a cycle",
+     8.0,
+     400.0,
+     true,
+     {},
+     get<&S::max_motion_px>,
+     set<&S::max_motion_px>},
+    number<&S::read_noise_levels>("read_noise_levels", "grey levels", 0.0, 20.0,
+                                  "the camera's noise in the dark, rms"),
+    number<&S::electrons_per_level>("electrons_per_level", "electrons", 1.0, 1e5,
+                                    "light that makes one grey level"),
+    choice<&S::keep_maps>("keep_maps", kSwitch, "keep phase, modulation and the like"),
+}};
+
+std::string what_it_takes(const DecodeField& field) {
+    if (field.choices.empty()) {
+        return std::string(field.whole ? "a whole number" : "a number") + " from " +
+               base::number_text(field.least) + " to " + base::number_text(field.most) +
+               (*field.unit == '\0' ? "" : std::string(", ") + field.unit);
+    }
+    std::string names;
+    for (const char* name : field.choices) {
+        names += (names.empty() ? "" : ", ") + std::string(name);
+    }
+    return "one of " + names;
+}
+
+bool allowed(const DecodeField& field, double value) {
+    // False for NaN.
+    return value >= field.least && value <= field.most &&
+           (!field.whole || value == std::floor(value));
+}
+
+Error refusal(const DecodeField& field, std::string_view value) {
+    return Error{ErrorCode::invalid_argument, "decode settings: " + std::string(field.name) +
+                                                  " is " + std::string(value) + ", must be " +
+                                                  what_it_takes(field)};
 }
 
 }  // namespace
 
+std::span<const DecodeField> decode_fields() noexcept { return kFields; }
+
+std::string text_of(const DecodeField& field, const DecodeSettings& settings) {
+    const double value = field.get(settings);
+    if (field.choices.empty() || !allowed(field, value)) {
+        return base::number_text(value);
+    }
+    return field.choices[static_cast<std::size_t>(value)];
+}
+
+Result<void> set_field(DecodeSettings& settings, std::string_view name, std::string_view text) {
+    const auto* field = std::find_if(kFields.begin(), kFields.end(),
+                                     [&](const DecodeField& one) { return name == one.name; });
+    if (field == kFields.end()) {
+        std::string names;
+        for (const DecodeField& one : kFields) {
+            names += (names.empty() ? "" : ", ") + std::string(one.name);
+        }
+        return Error{ErrorCode::invalid_argument, "decode settings: " + base::quoted(name) +
+                                                      " is none of them; they are " + names};
+    }
+    double value = 0.0;
+    bool read = false;
+    for (std::size_t n = 0; n < field->choices.size(); ++n) {
+        if (text == field->choices[n]) {
+            value = static_cast<double>(n);
+            read = true;
+        }
+    }
+    if (field->choices.empty()) {
+        const std::optional<double> number = base::parse_double(text);
+        read = number.has_value();
+        value = number.value_or(0.0);
+    }
+    if (!read || !allowed(*field, value)) {
+        return refusal(*field, base::quoted(text));
+    }
+    field->set(settings, value);
+    return {};
+}
+
 Result<void> validate(const DecodeSettings& settings) {
-    const Result<void> checks[] = {
-        in_range("min_modulation", settings.min_modulation, 0.0, 127.0),
-        in_range("order_tolerance", settings.order_tolerance, 0.05, 0.5),
-        in_range("gray_edge_guard", settings.gray_edge_guard, 0.0, 0.45),
-        in_range("motion_tolerance", settings.motion_tolerance, 0.05, 10.0),
-        in_range("max_motion_px", settings.max_motion_px, 8.0, 400.0),
-    };
-    for (const Result<void>& check : checks) {
-        if (!check) {
-            return check;
+    for (const DecodeField& field : kFields) {
+        if (!allowed(field, field.get(settings))) {
+            return refusal(field, base::number_text(field.get(settings)));
         }
     }
     return {};

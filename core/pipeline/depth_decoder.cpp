@@ -85,6 +85,10 @@ Result<void> DepthDecoder::Impl::prepare(const Rig& rig) {
         average.resize(size.width, size.height);
         if (geometry) {
             coordinate.resize(size.width, size.height);
+            const bool phases = !plan.sines.empty() && plan.sines.back().kind != PeriodKind::ramp;
+            if (phases) {
+                sigma = Image<float>(size.width, size.height, 0.0F);
+            }
         }
     }
     if (plan.carrier()) {
@@ -264,6 +268,8 @@ DecodeStatus DepthDecoder::push(const FramePtr& frame) noexcept { return impl_->
 const DepthFrame& DepthDecoder::depth() const noexcept { return impl_->depth; }
 const PhaseMap& DepthDecoder::phase() const noexcept { return impl_->phase_map; }
 const Image<float>& DepthDecoder::coordinate_px() const noexcept { return impl_->coordinate; }
+const Image<float>& DepthDecoder::sigma_mm() const noexcept { return impl_->sigma; }
+
 const Image<float>& DepthDecoder::average() const noexcept { return impl_->average; }
 
 Result<void> DepthDecoder::set_order_depth(ImageView<const std::uint16_t> depth, double unit_mm) {

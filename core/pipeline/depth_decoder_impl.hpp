@@ -68,6 +68,7 @@ struct DepthDecoder::Impl {
     void colours_of_row(int y) noexcept;
     void average_row(const Images& images, int y) noexcept;
     void triangulate_row(int y, const RowOut& row) noexcept;
+    void noise_gain_row(int y, float* gain) const noexcept;
 
     /// The chosen images once more, moved along with what moves, their taps corrected.
     void follow_images() noexcept;
@@ -95,6 +96,7 @@ struct DepthDecoder::Impl {
     PhaseMap phase_map;
     Image<float> coordinate;
     Image<float> average;
+    Image<float> sigma;
     std::vector<Images> still;      // by period, for the rows at hand
     std::vector<Images> following;  // the same, for what moves
     bool can_follow = false;

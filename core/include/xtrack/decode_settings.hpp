@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+#include <string>
+#include <string_view>
+
 #include <xtrack/result.hpp>
 
 namespace xtrack {
@@ -61,9 +65,50 @@ struct DecodeSettings {
     /// Largest move from one image of a pattern to the next, camera px, 8 ... 400. Its square is
     /// the cost of the search.
     int max_motion_px = 120;
-    /// Keep phase, modulation, coordinate and average images of each depth; costs memory traffic.
+    /// The camera's noise, for DepthDecoder::sigma_mm(): rms where no light falls, grey levels, 0
+    /// ... 20; quantisation alone is 0.29.
+    double read_noise_levels = 0.5;
+    /// Electrons that make a grey level, 1 ... 1e5: the variance of shot noise is the grey value
+    /// over it. Webcams have 20 to 80.
+    double electrons_per_level = 50.0;
+    /// Keep phase, modulation, coordinate, average and sigma of each depth; costs memory traffic.
     bool keep_maps = false;
 };
+
+/// One field of DecodeSettings, for whatever lists, shows or changes settings by name: command
+/// line, viewer, bindings.
+/// @since 0.1
+struct DecodeField {
+    const char* name = "";     ///< as in the struct
+    const char* unit = "";     ///< "" for shares, switches and choices
+    const char* summary = "";  ///< one line
+    double least = 0.0;
+    double most = 1.0;
+    bool whole = false;                    ///< whole numbers only
+    std::span<const char* const> choices;  ///< names of the values 0, 1 ...; empty: a number
+    double (*get)(const DecodeSettings&) = nullptr;
+    void (*set)(DecodeSettings&, double) = nullptr;
+
+    [[nodiscard]] double standard() const { return get(DecodeSettings{}); }
+};
+
+/// All fields, in the struct's order.
+/// @thread any @ownership static
+/// @since 0.1
+[[nodiscard]] std::span<const DecodeField> decode_fields() noexcept;
+
+/// The value of a field as it is written: a number, or a choice's name.
+/// @thread any
+/// @since 0.1
+[[nodiscard]] std::string text_of(const DecodeField& field, const DecodeSettings& settings);
+
+/// Sets a field by its name; nothing changes on an Error.
+/// @param text a number with a point, or a choice's name
+/// @return invalid_argument that names the field and what it takes
+/// @thread any
+/// @since 0.1
+[[nodiscard]] Result<void> set_field(DecodeSettings& settings, std::string_view name,
+                                     std::string_view text);
 
 /// @return invalid_argument that names the first setting out of its documented range
 /// @thread any

@@ -109,6 +109,12 @@ class DepthDecoder {
     /// black, or of a bit and its inverse), grey levels; empty without keep_maps.
     [[nodiscard]] const Image<float>& average() const noexcept;
 
+    /// Standard deviation of each depth that the camera's noise causes, mm, 0 where there is none:
+    /// sigma_Z = sigma_phi (P / 2 pi) / |dx/dZ|, with sigma_phi from modulation, brightness and
+    /// DecodeSettings' noise. What moves, or takes a wrong order, errs by more. Empty without
+    /// keep_maps or without an order.
+    [[nodiscard]] const Image<float>& sigma_mm() const noexcept;
+
     /// Forgets all frames, as after a cut; settings and the order depth stay.
     void reset() noexcept;
 

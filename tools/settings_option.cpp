@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/settings_option.hpp"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+namespace xtrack::tools {
+
+namespace {
+
+std::string range_of(const DecodeField& field) {
+    if (field.choices.empty()) {
+        return fmt::format("{:g} to {:g}{}{}", field.least, field.most,
+                           *field.unit == '\0' ? "" : " ", field.unit);
+    }
+    std::string names;
+    for (const char* name : field.choices) {
+        names += (names.empty() ? "" : ", ") + std::string(name);
+    }
+    return names;
+}
+
+std::string all_settings() {
+    std::string text = "Changes a setting of the decoder:";
+    for (const DecodeField& field : decode_fields()) {
+        text += fmt::format("\n{}: {} ({}; else {})", field.name, field.summary, range_of(field),
+                            text_of(field, DecodeSettings{}));
+    }
+    return text;
+}
+
+}  // namespace
+
+void add_settings_option(CLI::App& command, std::vector<std::string>& changes) {
+    command.add_option("--set", changes, all_settings())
+        ->type_name("NAME=VALUE")
+        ->allow_extra_args(false);
+}
+
+Result<void> apply_settings(const std::vector<std::string>& changes, DecodeSettings& settings) {
+    for (const std::string& change : changes) {
+        const std::size_t equals = change.find('=');
+        if (equals == std::string::npos) {
+            return Error{ErrorCode::invalid_argument,
+                         "--set " + change + ": give NAME=VALUE, such as min_modulation=8"};
+        }
+        if (auto set = set_field(settings, std::string_view(change).substr(0, equals),
+                                 std::string_view(change).substr(equals + 1));
+            !set) {
+            return Error{set.error().code, "--set: " + set.error().message};
+        }
+    }
+    return {};
+}
+
+}  // namespace xtrack::tools

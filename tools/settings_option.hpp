@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/App.hpp>
+#include <xtrack/decode_settings.hpp>
+
+namespace xtrack::tools {
+
+/// `--set NAME=VALUE`, as often as needed; its help lists every setting with unit, range and
+/// standard value.
+void add_settings_option(CLI::App& command, std::vector<std::string>& changes);
+
+/// @errors invalid_argument: what is no NAME=VALUE, a name that is none, a value out of range
+[[nodiscard]] Result<void> apply_settings(const std::vector<std::string>& changes,
+                                          DecodeSettings& settings);
+
+}  // namespace xtrack::tools
