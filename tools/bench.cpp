@@ -11,6 +11,7 @@
 #include <CLI/CLI.hpp>
 
 #include "tools/bench/instruction_sets.hpp"
+#include "tools/bench/motion/report.hpp"
 #include "tools/bench/ours.hpp"
 #include "tools/bench/paper.hpp"
 #include "tools/bench/peers.hpp"
@@ -32,6 +33,10 @@ struct BenchOptions {
     std::size_t rounds = 100;
     bool paper = false;
     bool json = false;
+    bool motion = false;
+    std::vector<std::string> recordings;
+    std::vector<std::string> methods;
+    std::vector<std::string> parts{"speeds", "fastest"};
 };
 
 // "640x480"
@@ -161,6 +166,54 @@ int bench_paper(const BenchOptions& options) {
     return 0;
 }
 
+int bench_motion(const BenchOptions& options) {
+    const auto wanted = [&](const char* part) {
+        return std::find(options.parts.begin(), options.parts.end(), part) != options.parts.end();
+    };
+    const auto sequences = bench::sequence_count(options.methods);
+    if (!sequences) {
+        return fail(sequences.error());
+    }
+    bench::MotionReport report;
+    // What can fail for the caller's sake comes first.
+    for (const std::string& folder : options.recordings) {
+        auto recording = bench::measure_recording(folder);
+        if (!recording) {
+            return fail(recording.error());
+        }
+        report.recordings.push_back(*std::move(recording));
+    }
+    if (wanted("speeds")) {
+        Progress progress("bench, speeds", *sequences * bench::kSpeedSteps);
+        auto methods = bench::sweep_speeds(options.methods, [&] { progress.step(); });
+        if (!methods) {
+            return fail(methods.error());
+        }
+        report.methods = *std::move(methods);
+    }
+    if (wanted("fastest")) {
+        Progress progress("bench, cameras", *sequences * bench::kMotionCameras.size());
+        auto fastest = bench::find_fastest(options.methods, [&] { progress.step(); });
+        if (!fastest) {
+            return fail(fastest.error());
+        }
+        report.fastest = *std::move(fastest);
+    }
+    const std::string text = options.json ? bench::json_of(report) : bench::table_of(report);
+    std::fputs(text.c_str(), stdout);
+    return 0;
+}
+
+std::vector<std::string> motion_method_names() {
+    std::vector<std::string> names;
+    if (const auto methods = bench::motion_methods(bench::motion_rig())) {
+        for (const bench::MotionMethod& method : *methods) {
+            names.emplace_back(method.name);
+        }
+    }
+    return names;
+}
+
 }  // namespace
 
 void add_bench(CLI::App& app, int& exit_status) {
@@ -172,11 +225,36 @@ void add_bench(CLI::App& app, int& exit_status) {
                                    "Sizes of the camera's image, such as 640x480,1280x720")
                       ->delimiter(',')
                       ->capture_default_str();
-    command->add_option("--repetitions", options->rounds, "How often each is measured")
-        ->check(CLI::Range(1, 100'000))
-        ->capture_default_str();
-    command->add_flag("--paper", options->paper, "The table of the 2012 paper instead, 640x480")
-        ->excludes(sizes);
+    auto* rounds =
+        command->add_option("--repetitions", options->rounds, "How often each is measured")
+            ->check(CLI::Range(1, 100'000))
+            ->capture_default_str();
+    auto* paper =
+        command->add_flag("--paper", options->paper, "The table of the 2012 paper instead, 640x480")
+            ->excludes(sizes);
+    auto* motion =
+        command
+            ->add_flag("--motion", options->motion,
+                       "Depth of a simulated hand that moves instead, by method and speed")
+            ->excludes(sizes)
+            ->excludes(rounds)
+            ->excludes(paper);
+    command
+        ->add_option("--recordings", options->recordings,
+                     "With --motion: folders of recordings with true depth and mask")
+        ->needs(motion);
+    command->add_option("--methods", options->methods, "With --motion: only these")
+        ->delimiter(',')
+        ->check(CLI::IsMember(motion_method_names()))
+        ->needs(motion);
+    command
+        ->add_option("--parts", options->parts,
+                     "With --motion: speeds (every method at every speed), fastest (the fastest "
+                     "hand of every camera and method), recordings (those given alone)")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"speeds", "fastest", "recordings"}))
+        ->capture_default_str()
+        ->needs(motion);
     command->add_flag("--json", options->json, "The figures as one JSON object");
     command->callback([options, &exit_status] {
         std::vector<Size> wanted;
@@ -188,6 +266,10 @@ void add_bench(CLI::App& app, int& exit_status) {
                 return;
             }
             wanted.push_back(*size);
+        }
+        if (options->motion) {
+            exit_status = bench_motion(*options);
+            return;
         }
         exit_status = options->paper ? bench_paper(*options) : bench_sizes(*options, wanted);
     });

@@ -7,7 +7,8 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgproc.hpp>
+
+#include "tools/hand_accuracy.hpp"
 
 namespace xtrack::tools {
 
@@ -15,9 +16,6 @@ namespace {
 
 // Beyond this a pixel is not noisy but wrong: another fringe, another surface.
 constexpr double kOffBy_mm = 15.0;
-// Pixels at the edge of the hand see hand and background at once.
-constexpr int kErodeHand_px = 2;
-constexpr std::uint8_t kHandMask = 1;
 
 double percentile(std::vector<std::uint16_t>& sorted, double share) {
     const auto last = static_cast<double>(sorted.size() - 1);
@@ -110,40 +108,12 @@ Result<std::optional<TruthReport>> measure_truth(const RecordingReader& recordin
     if (auto ok = recording.read_truth_mask(index, mask); !ok) {
         return ok.error();
     }
-    cv::Mat hand(mask.height(), mask.width(), CV_8UC1, mask.row(0),
-                 static_cast<std::size_t>(mask.stride()));
-    hand = hand == kHandMask;
-    constexpr int kSide = 2 * kErodeHand_px + 1;
-    cv::erode(hand, hand, cv::Mat::ones(kSide, kSide, CV_8UC1));
-
+    const HandAccuracy hand = measure_hand(depth, truth.depth.view(), mask.view(), kOffBy_mm);
     TruthReport report;
-    std::size_t close = 0;
-    std::size_t off = 0;
-    std::size_t missing = 0;
-    double squares = 0.0;
-    for (int y = 0; y < hand.rows; ++y) {
-        for (int x = 0; x < hand.cols; ++x) {
-            if (hand.at<std::uint8_t>(y, x) == 0 || truth.depth.at(x, y) == 0) {
-                continue;
-            }
-            ++report.pixels;
-            if (depth.depth.at(x, y) == 0) {
-                ++missing;
-                continue;
-            }
-            const double error = depth.depth.at(x, y) * depth.depth_unit_mm -
-                                 truth.depth.at(x, y) * truth.depth_unit_mm;
-            if (std::abs(error) > kOffBy_mm) {
-                ++off;
-                continue;
-            }
-            ++close;
-            squares += error * error;
-        }
-    }
-    report.rms_mm = close == 0 ? 0.0 : std::sqrt(squares / static_cast<double>(close));
-    report.off_percent = percent(off, report.pixels);
-    report.missing_percent = percent(missing, report.pixels);
+    report.pixels = hand.pixels;
+    report.rms_mm = hand.rms_mm();
+    report.off_percent = hand.off_percent();
+    report.missing_percent = hand.missing_percent();
     return std::optional(report);
 }
 

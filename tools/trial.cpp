@@ -7,13 +7,14 @@
 #include <memory>
 #include <utility>
 
+#include "tools/hand_accuracy.hpp"
+
 namespace xtrack::tools {
 
 namespace {
 
 constexpr std::uint64_t kMeasureEvery = 20;  // frames; rendering truth costs as much as a frame
 constexpr double kInlier_mm = 15.0;
-constexpr int kErode_px = 2;  // the hand's outermost pixels mix hand and background
 
 GestureLabel label_of(const SimLabel& sim) {
     GestureLabel label;
@@ -51,49 +52,16 @@ class TruthMeter {
  private:
     static constexpr std::size_t kKept = 4;  // frames from the middle of a window to its newest
 
-    static bool inside_hand(const Image<std::uint8_t>& mask, int x, int y) {
-        for (int dy = -kErode_px; dy <= kErode_px; ++dy) {
-            for (int dx = -kErode_px; dx <= kErode_px; ++dx) {
-                if (mask.at(x + dx, y + dy) != static_cast<std::uint8_t>(SimPart::hand)) {
-                    return false;
-                }
-            }
-        }
-        return true;
-    }
-
     void measure_depth(const SimTruth& truth, const DepthFrame& depth) {
-        double square_sum = 0.0;
-        int within = 0;
-        int off = 0;
-        int missing = 0;
-        for (int y = kErode_px; y < depth.depth.height() - kErode_px; ++y) {
-            for (int x = kErode_px; x < depth.depth.width() - kErode_px; ++x) {
-                if (!inside_hand(truth.mask, x, y)) {
-                    continue;
-                }
-                if (depth.depth.at(x, y) == 0) {
-                    ++missing;
-                    continue;
-                }
-                const double error = depth.depth.at(x, y) * depth.depth_unit_mm -
-                                     truth.depth.at(x, y) * kDepthUnitMm;
-                if (std::abs(error) <= kInlier_mm) {
-                    square_sum += error * error;
-                    ++within;
-                } else {
-                    ++off;
-                }
-            }
-        }
-        constexpr int kEnough = 500;  // pixels; fewer is a hand on its way in or out
-        const int all = within + off + missing;
-        if (all < kEnough || within == 0) {
+        const HandAccuracy hand =
+            measure_hand(depth, truth.depth.view(), truth.mask.view(), kInlier_mm);
+        constexpr std::size_t kEnough = 500;  // pixels; fewer is a hand on its way in or out
+        if (hand.pixels < kEnough || hand.close == 0) {
             return;
         }
-        result_.depth_rms_mm.push_back(std::sqrt(square_sum / within));
-        result_.depth_off.push_back(static_cast<double>(off) / all);
-        result_.depth_missing.push_back(static_cast<double>(missing) / all);
+        result_.depth_rms_mm.push_back(hand.rms_mm());
+        result_.depth_off.push_back(hand.off_percent() * 1e-2);
+        result_.depth_missing.push_back(hand.missing_percent() * 1e-2);
     }
 
     void measure_palm(const SimTruth& truth, const HandFrame& hands) {

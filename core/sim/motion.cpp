@@ -60,7 +60,8 @@ const char* name_of(SimAction action) {
         case SimAction::idle:
         case SimAction::wander:
         case SimAction::enter:
-        case SimAction::leave: break;
+        case SimAction::leave:
+        case SimAction::slide: break;
     }
     return "";
 }
@@ -77,7 +78,8 @@ Vec3f direction_of(SimAction action) {
         case SimAction::idle:
         case SimAction::wander:
         case SimAction::enter:
-        case SimAction::leave: break;
+        case SimAction::leave:
+        case SimAction::slide: break;
     }
     return Vec3f::Zero();
 }
@@ -129,6 +131,7 @@ class HandMotion::Planner {
             case SimAction::swipe_down: swipe(step.action); break;
             case SimAction::push: push(); break;
             case SimAction::pinch: pinch(); break;
+            case SimAction::slide: slide(step); break;
         }
     }
 
@@ -162,6 +165,13 @@ class HandMotion::Planner {
         }
         move_at(home_, draw(kReturnPeakMmps));
         now() = std::max(now(), end);
+    }
+
+    void slide(const SimStep& step) {
+        const Vec3f half = step.velocity_mmps * static_cast<float>(0.5 * step.duration_s);
+        motion_.place_.move_evenly(now(), now(), to_array(home_ - half));
+        motion_.place_.move_evenly(now(), now() + step.duration_s, to_array(home_ + half));
+        now() += step.duration_s;
     }
 
     void swipe(SimAction action) {

@@ -13,7 +13,8 @@
 
 namespace xtrack::sim {
 
-/// x(t) of kValues values that move from target to target with the least jerk (Flash, Hogan 1985).
+/// x(t) of kValues values that move from target to target with the least jerk (Flash, Hogan 1985),
+/// or evenly.
 template <std::size_t kValues>
 class Track {
  public:
@@ -22,7 +23,11 @@ class Track {
 
     /// Moves to `target` between the two times; moves must not overlap.
     void move(double start_s, double end_s, const Value& target) {
-        moves_.push_back({start_s, end_s, target});
+        moves_.push_back({start_s, end_s, target, false});
+    }
+    /// The same at constant velocity; in no time at all, it is a jump.
+    void move_evenly(double start_s, double end_s, const Value& target) {
+        moves_.push_back({start_s, end_s, target, true});
     }
     [[nodiscard]] const Value& target() const {
         return moves_.empty() ? start_ : moves_.back().target;
@@ -41,11 +46,12 @@ class Track {
         }
         const Move& move = moves_[low - 1];
         const Value& from = low == 1 ? start_ : moves_[low - 2].target;
-        const double u = (t_s - move.start_s) / (move.end_s - move.start_s);
-        if (u >= 1.0) {
+        if (t_s >= move.end_s) {
             return move.target;
         }
-        const auto s = static_cast<float>(u * u * u * (10.0 + u * (-15.0 + 6.0 * u)));
+        const double u = (t_s - move.start_s) / (move.end_s - move.start_s);
+        const auto s =
+            static_cast<float>(move.even ? u : u * u * u * (10.0 + u * (-15.0 + 6.0 * u)));
         Value value{};
         for (std::size_t i = 0; i < kValues; ++i) {
             value[i] = from[i] + (move.target[i] - from[i]) * s;
@@ -58,6 +64,7 @@ class Track {
         double start_s;
         double end_s;
         Value target;
+        bool even;
     };
     Value start_;
     std::vector<Move> moves_;

@@ -201,12 +201,19 @@ Result<void> SimSettings::validate() const {
                      "script; give one of them"};
     }
     for (const SimStep& step : script) {
-        const bool lasts = step.action == SimAction::idle || step.action == SimAction::wander;
+        const bool lasts = step.action == SimAction::idle || step.action == SimAction::wander ||
+                           step.action == SimAction::slide;
         if (!(step.start_s <= kHour * 10.0) || (lasts && !(step.duration_s > 0.0)) ||
             !(step.duration_s <= kHour)) {
             return Error{ErrorCode::invalid_argument,
                          "simulation: script has a step whose start_s or duration_s is not a time; "
                          "give seconds, duration_s above 0 and at most 3600"};
+        }
+        constexpr float kFastestMmps = 20000.0F;  // no hand is; far places stay within a float
+        if (!(step.velocity_mmps.norm() <= kFastestMmps)) {
+            return Error{ErrorCode::invalid_argument,
+                         "simulation: script has a step whose velocity_mmps is no velocity; give "
+                         "at most 20000 mm/s"};
         }
     }
     return {};

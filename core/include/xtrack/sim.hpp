@@ -35,6 +35,7 @@ enum class SimAction : std::uint8_t {
     swipe_down,
     push,   ///< toward the screen, stays, returns
     pinch,  ///< thumb and index close, hold, open
+    slide,  ///< through its resting place at constant velocity, from its first moment to its last
 };
 
 /// One line of a script.
@@ -43,7 +44,10 @@ struct SimStep {
     SimAction action = SimAction::idle;
     SimHand hand = SimHand::right;
     double start_s = -1.0;    ///< not before this time; negative: when the hand's last step is over
-    double duration_s = 1.0;  ///< of idle and wander, > 0; gestures take their own time
+    double duration_s = 1.0;  ///< of idle, wander and slide, > 0; gestures take their own time
+    /// Of slide: camera frame, at most 20000 mm/s. The hand is where it rests at half time, and so
+    /// it starts half a way before that place, however far outside the image this is.
+    Vec3f velocity_mmps = Vec3f::Zero();
 };
 
 /// The person. Ranges are those of adults.

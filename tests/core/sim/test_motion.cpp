@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
 
@@ -153,6 +154,41 @@ TEST(HandMotion, StrokesAreSmooth) {
     for (double t = 0.0; t < motion.end_s(); t += 0.001) {
         ASSERT_LT((motion.at(t + 0.001).palm_mm - motion.at(t).palm_mm).norm(), 1.3F) << t;
     }
+}
+
+TEST(HandMotion, SlidesThroughItsRestingPlaceAtConstantVelocity) {
+    SimSettings settings = SimSettings::preset("ideal-60").value();
+    const Vec3f velocity(900.0F, 0.0F, -300.0F);
+    settings.script = {{SimAction::slide, SimHand::right, 0.5, 0.8, velocity}};
+    const HandMotion motion(settings, SimHand::right, hand_model());
+    EXPECT_DOUBLE_EQ(motion.end_s(), 1.3);
+    EXPECT_TRUE(motion.labels().empty());
+    const Vec3f home(static_cast<float>(settings.user.hand_x_mm),
+                     static_cast<float>(settings.user.hand_y_mm),
+                     static_cast<float>(settings.user.hand_distance_mm));
+    // The sway of a living hand comes on top, at most some millimetres.
+    constexpr float kSway_mm = 12.0F;
+    for (const double t : {0.5, 0.7, 0.9, 1.1, 1.2999}) {
+        const Vec3f wanted = home + velocity * static_cast<float>(t - 0.9);
+        EXPECT_LT((motion.at(t).palm_mm - wanted).norm(), kSway_mm) << t;
+    }
+    // In the first and the last moment it is as fast as in the middle.
+    for (const double t : {0.5, 0.9, 1.28}) {
+        const Vec3f moved = motion.at(t + 0.02).palm_mm - motion.at(t).palm_mm;
+        EXPECT_LT((moved - velocity * 0.02F).norm(), 0.8F) << t;
+    }
+    // It stays where the slide ends.
+    EXPECT_LT((motion.at(2.0).palm_mm - (home + velocity * 0.4F)).norm(), kSway_mm);
+}
+
+TEST(SimSettings, RefusesASlideThatIsNoMovement) {
+    SimSettings settings = SimSettings::preset("ideal-60").value();
+    settings.script = {{SimAction::slide, SimHand::right, -1.0, 0.0}};
+    EXPECT_FALSE(settings.validate());
+    settings.script = {{SimAction::slide, SimHand::right, -1.0, 1.0, {NAN, 0.0F, 0.0F}}};
+    const auto refused = settings.validate();
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("velocity_mmps"), std::string::npos);
 }
 
 TEST(SimSettings, VariesThePersonAndTheOrder) {
