@@ -167,6 +167,7 @@ const char* describe(RejectReason reason) noexcept {
             return "the frame's pattern index is not in the pattern sequence";
         case RejectReason::time_backwards:
             return "the frame's stamp is before that of the frame before it";
+        case RejectReason::on_hold: return "the decoder is on hold and takes no frames";
     }
     return "";
 }

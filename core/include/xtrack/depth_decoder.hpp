@@ -30,6 +30,7 @@ enum class RejectReason {
     unknown_pattern,       ///< nobody knows which pattern it saw
     pattern_out_of_range,  ///< its pattern index is not in the sequence
     time_backwards,        ///< its stamp is before that of the frame pushed last
+    on_hold,               ///< the decoder was told to take none (PaperDecoder)
 };
 
 /// One sentence for logs. Static storage.
