@@ -15,7 +15,7 @@ set(XTRACK_HEADERS_core/capture null_source recording)
 set(XTRACK_HEADERS_core/sim sim)
 set(XTRACK_HEADERS_core/decode decode_settings phase_ripple)
 set(XTRACK_HEADERS_core/unwrap relative_depth)
-set(XTRACK_HEADERS_core/pipeline depth_decoder)
+set(XTRACK_HEADERS_core/pipeline depth_decoder paper_decoder)
 set(XTRACK_HEADERS_gestures/segment hand hand_region tracker_settings)
 set(XTRACK_HEADERS_gestures/track hand_source hand_tracker joint_recording
                                 one_euro_filter)

@@ -226,6 +226,7 @@ const char* describe(RejectReason reason) noexcept {
             return "the frame is grey, its pattern is told apart by colour; record in colour";
         case RejectReason::time_backwards:
             return "the frame's stamp is before that of the frame before it";
+        case RejectReason::on_hold: return "the decoder is on hold and takes no frames";
     }
     return "";
 }

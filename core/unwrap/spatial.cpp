@@ -22,7 +22,6 @@ constexpr float kTurn_rad = 2.0F * std::numbers::pi_v<float>;
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr double kLeastLimit_rad = 0.1;
 constexpr double kMostLimit_rad = 3.1;
-constexpr int kChunk = 16;
 
 Error out_of_range(const char* name, double value, const std::string& range) {
     return {ErrorCode::invalid_argument,
@@ -43,8 +42,9 @@ class SpatialUnwrapper::Impl {
         roots_.reserve(pixels);
         components_.reserve(std::min<std::size_t>(pixels, kMaxPhaseComponents));
         seeds_.reserve(components_.capacity());
-        add_rad_.resize(row + kChunk);
-        ids_.resize(row + kChunk);
+        // A pixel with a phase, and nothing after it.
+        pieces_.reserve(2 * row + 1);
+        phase_row_.resize(row);
     }
 
     std::span<const PhaseComponent> unwrap(ImageView<const float> phase_rad,
@@ -55,15 +55,29 @@ class SpatialUnwrapper::Impl {
             unwrapped_rad.size() != size_ || component.size() != size_) {
             return {};
         }
+        const auto found = solve(phase_rad, modulation);
+        for (int y = 0; y < size_.height; ++y) {
+            write_row(y, phase_rad.row(y), {}, unwrapped_rad.row(y), component.row(y));
+        }
+        return found;
+    }
+
+    std::span<const PhaseComponent> solve(ImageView<const float> phase_rad,
+                                          ImageView<const float> modulation) {
+        if (phase_rad.size() != size_ || modulation.size() != size_) {
+            return {};
+        }
         maps_.make(phase_rad, modulation, static_cast<float>(settings_.step_limit_rad));
         graph_.build(maps_, settings_.min_support);
         label_runs();
         measure(modulation);
-        for (int y = 0; y < size_.height; ++y) {
-            write_row(y, phase_rad.row(y), unwrapped_rad.row(y), component.row(y));
-        }
         return components_;
     }
+
+    [[nodiscard]] PhasePlace place(int x, int y) const noexcept;
+    void write_row(int y, const float* phase_rad, std::span<const std::int32_t> turns,
+                   float* unwrapped_rad, std::uint16_t* component) noexcept;
+    void set_settings(const SpatialUnwrapSettings& settings) noexcept { settings_ = settings; }
 
  private:
     /// Of each component: what its seed is known by.
@@ -75,8 +89,6 @@ class SpatialUnwrapper::Impl {
     void label_runs();
     void measure(ImageView<const float> modulation);
     void take_seed(std::uint32_t run, int word, int y, const float* modulation);
-    void write_row(int y, const float* phase_rad, float* unwrapped_rad, std::uint16_t* component);
-    void put(int begin, int end, float add_rad, std::uint16_t id);
 
     Size size_;
     SpatialUnwrapSettings settings_;
@@ -87,8 +99,8 @@ class SpatialUnwrapper::Impl {
     std::vector<std::uint16_t> label_;  ///< of each run: its component's id, or 0
     std::vector<PhaseComponent> components_;
     std::vector<Seed> seeds_;
-    std::vector<float> add_rad_;  ///< of each pixel of a row, and room for a chunk more
-    std::vector<std::uint16_t> ids_;
+    std::vector<PhasePiece> pieces_;  ///< of a row
+    std::vector<float> phase_row_;    ///< a copy of one that is to be overwritten
 };
 
 /// Numbers the regions that are large enough, and gives every run its region's number.
@@ -174,18 +186,35 @@ void SpatialUnwrapper::Impl::take_seed(std::uint32_t index, int word, int y,
     }
 }
 
-/// Whole chunks, past the end: what comes next overwrites the rest, and short pieces of known
-/// length are much faster than exact ones.
-inline void SpatialUnwrapper::Impl::put(int begin, int end, float add_rad, std::uint16_t id) {
-    for (int x = begin; x < end; x += kChunk) {
-        std::fill_n(add_rad_.data() + x, kChunk, add_rad);
-        std::fill_n(ids_.data() + x, kChunk, id);
+PhasePlace SpatialUnwrapper::Impl::place(int x, int y) const noexcept {
+    const int word = x / kWordPixels;
+    const int bit = x % kWordPixels;
+    const RunGraph::Range range = graph_.runs_of(word, y);
+    for (std::uint32_t index = range.begin; index < range.end; ++index) {
+        const Run run = graph_.run(index);
+        if (run.last < bit) {
+            continue;
+        }
+        const std::uint16_t id = label_[index];
+        if (run.first > bit || id == 0) {
+            break;
+        }
+        return {id, order_[index] - seeds_[id - 1U].order +
+                        maps_.rise_along(maps_.at(word, y), run.mask() & bits_below(bit))};
     }
+    return {};
 }
 
-void SpatialUnwrapper::Impl::write_row(int y, const float* phase_rad, float* unwrapped_rad,
-                                       std::uint16_t* component) {
-    int done = 0;
+void SpatialUnwrapper::Impl::write_row(int y, const float* phase_rad,
+                                       std::span<const std::int32_t> turns, float* unwrapped_rad,
+                                       std::uint16_t* component) noexcept {
+    pieces_.clear();
+    // Pieces of no pixels are left out.
+    const auto put = [this](int end, float add_rad, std::uint16_t id) {
+        if (end > (pieces_.empty() ? 0 : pieces_.back().end)) {
+            pieces_.push_back({end, add_rad, id});
+        }
+    };
     for (int word = 0; word < maps_.words(); ++word) {
         const std::size_t at = maps_.at(word, y);
         const int x = word * kWordPixels;
@@ -196,26 +225,24 @@ void SpatialUnwrapper::Impl::write_row(int y, const float* phase_rad, float* unw
                 continue;
             }
             const Run run = graph_.run(index);
-            put(done, x + run.first, kNone, 0);
-            done = x + run.first;
-            std::int32_t order = order_[index] - seeds_[id - 1U].order;
+            put(x + run.first, kNone, 0);
+            std::int32_t order =
+                order_[index] - seeds_[id - 1U].order + (id <= turns.size() ? turns[id - 1U] : 0);
             StepMaps::Word wraps =
                 (maps_.right_up[at] | maps_.right_down[at]) & run.mask() & bits_below(run.last);
             for (; wraps != 0; wraps &= wraps - 1) {
-                const int last = std::countr_zero(wraps);
-                put(done, x + last + 1, kTurn_rad * static_cast<float>(order), id);
-                done = x + last + 1;
-                order += maps_.rise_along(at, wraps & (~wraps + 1));
+                put(x + std::countr_zero(wraps) + 1, kTurn_rad * static_cast<float>(order), id);
+                order += (maps_.right_up[at] & wraps & (~wraps + 1)) != 0 ? 1 : -1;
             }
-            put(done, x + run.last + 1, kTurn_rad * static_cast<float>(order), id);
-            done = x + run.last + 1;
+            put(x + run.last + 1, kTurn_rad * static_cast<float>(order), id);
         }
     }
-    put(done, size_.width, kNone, 0);
-    for (int x = 0; x < size_.width; ++x) {
-        unwrapped_rad[x] = phase_rad[x] + add_rad_[static_cast<std::size_t>(x)];
+    put(size_.width, kNone, 0);
+    if (phase_rad == unwrapped_rad) {
+        std::copy_n(phase_rad, size_.width, phase_row_.data());
+        phase_rad = phase_row_.data();
     }
-    std::copy_n(ids_.data(), size_.width, component);
+    piece_row({size_.width, pieces_, phase_rad, unwrapped_rad, component});
 }
 
 Result<void> validate(const SpatialUnwrapSettings& settings) {
@@ -258,6 +285,26 @@ std::span<const PhaseComponent> SpatialUnwrapper::unwrap(ImageView<const float> 
                                                          ImageView<float> unwrapped_rad,
                                                          ImageView<std::uint16_t> component) {
     return impl_->unwrap(phase_rad, modulation, unwrapped_rad, component);
+}
+
+std::span<const PhaseComponent> SpatialUnwrapper::solve(ImageView<const float> phase_rad,
+                                                        ImageView<const float> modulation) {
+    return impl_->solve(phase_rad, modulation);
+}
+
+PhasePlace SpatialUnwrapper::place(int x, int y) const noexcept { return impl_->place(x, y); }
+
+void SpatialUnwrapper::write_row(int y, const float* phase_rad, std::span<const std::int32_t> turns,
+                                 float* unwrapped_rad, std::uint16_t* component) noexcept {
+    impl_->write_row(y, phase_rad, turns, unwrapped_rad, component);
+}
+
+Result<void> SpatialUnwrapper::set_settings(const SpatialUnwrapSettings& settings) {
+    if (auto valid = validate(settings); !valid) {
+        return valid;
+    }
+    impl_->set_settings(settings);
+    return {};
 }
 
 }  // namespace xtrack

@@ -41,6 +41,12 @@ struct PhaseComponent {
     int bottom_px = 0;
 };
 
+/// The component of a pixel, and the whole turns that its phase lacks within it.
+struct PhasePlace {
+    std::uint16_t component = 0;  ///< 0: none
+    std::int32_t turns = 0;       ///< 0 at the component's seed
+};
+
 /// Largest number of components in an image; of more, the smallest are masked.
 inline constexpr int kMaxPhaseComponents = 65535;
 
@@ -84,6 +90,25 @@ class SpatialUnwrapper {
                                                          ImageView<const float> modulation,
                                                          ImageView<float> unwrapped_rad,
                                                          ImageView<std::uint16_t> component);
+
+    /// The same in parts, for callers that choose where each component lies before anything is
+    /// written, or take rows further while they are in the cache: solve(), then ask and write.
+    /// @return as unwrap()
+    /// @thread one at a time
+    [[nodiscard]] std::span<const PhaseComponent> solve(ImageView<const float> phase_rad,
+                                                        ImageView<const float> modulation);
+    /// @pre 0 <= x < width, 0 <= y < height; solve() or unwrap() before
+    [[nodiscard]] PhasePlace place(int x, int y) const noexcept;
+    /// One row of what unwrap() writes.
+    /// @param phase_rad the row that was solved
+    /// @param turns added to the pixels of component i + 1; empty: none
+    /// @pre 0 <= y < height; solve() or unwrap() before
+    void write_row(int y, const float* phase_rad, std::span<const std::int32_t> turns,
+                   float* unwrapped_rad, std::uint16_t* component) noexcept;
+
+    /// Of the next image on; allocates nothing.
+    /// @errors invalid_argument, and nothing changed
+    [[nodiscard]] Result<void> set_settings(const SpatialUnwrapSettings& settings);
 
  private:
     class Impl;

@@ -39,6 +39,24 @@ float step_deviation(float step, float before2, float before, float after, float
     return std::fabs(step - 0.5F * (low + high));
 }
 
+void piece_row_scalar(const PieceRow& row) noexcept {
+    int x = 0;
+    for (const PhasePiece& piece : row.pieces) {
+        for (; x < piece.end; ++x) {
+            row.unwrapped_rad[x] = row.phase_rad[x] + piece.add_rad;
+            row.component[x] = piece.component;
+        }
+    }
+}
+
+void subtract_row_scalar(const SubtractRow& row) noexcept {
+    for (int x = 0; x < row.count; ++x) {
+        const float off = wrapped(row.phase_rad[x] - row.from_rad[x]);
+        // Rounding may lead past the ends.
+        row.difference_rad[x] = off > kPi ? kPi : (off < -kPi ? -kPi : off);
+    }
+}
+
 void take_row_scalar(const TakeRow& row) noexcept {
     for (int begin = 0; begin < row.count; begin += kWordPixels) {
         float best = 0.0F;
@@ -95,10 +113,14 @@ void judge_row_scalar(const JudgeRow& row) noexcept {
 }
 
 #if XTRACK_WITH_HIGHWAY
+void piece_row(const PieceRow& row) noexcept { piece_row_highway(row); }
+void subtract_row(const SubtractRow& row) noexcept { subtract_row_highway(row); }
 void take_row(const TakeRow& row) noexcept { take_row_highway(row); }
 void step_row(const StepRow& row) noexcept { step_row_highway(row); }
 void judge_row(const JudgeRow& row) noexcept { judge_row_highway(row); }
 #else
+void piece_row(const PieceRow& row) noexcept { piece_row_scalar(row); }
+void subtract_row(const SubtractRow& row) noexcept { subtract_row_scalar(row); }
 void take_row(const TakeRow& row) noexcept { take_row_scalar(row); }
 void step_row(const StepRow& row) noexcept { step_row_scalar(row); }
 void judge_row(const JudgeRow& row) noexcept { judge_row_scalar(row); }

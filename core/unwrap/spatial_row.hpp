@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 namespace xtrack {
 
@@ -67,18 +68,49 @@ struct JudgeRow {
 [[nodiscard]] float step_deviation(float step, float before2, float before, float after,
                                    float after2) noexcept;
 
+/// What a row of phases is off a row of others, wrapped: -pi ... pi, NaN where either is none.
+struct SubtractRow {
+    int count = 0;                     ///< pixels
+    const float* phase_rad = nullptr;  ///< -pi ... pi or NaN
+    const float* from_rad = nullptr;   ///< the same
+    float* difference_rad = nullptr;   ///< out
+};
+
+/// Pixels of a row up to `end`, from where the piece before ended: what is added to their phase
+/// (NaN masks them), and the component that they are of.
+struct PhasePiece {
+    int end = 0;
+    float add_rad = 0.0F;
+    std::uint16_t component = 0;
+};
+
+/// A row put together from its pieces.
+struct PieceRow {
+    int count = 0;                       ///< pixels; where the last piece ends
+    std::span<const PhasePiece> pieces;  ///< ends ascend
+    const float* phase_rad = nullptr;    ///< must not be what is written
+    float* unwrapped_rad = nullptr;      ///< out
+    std::uint16_t* component = nullptr;  ///< out
+};
+
 /// @thread any; rows are independent
 /// @ownership borrows everything for the call
+void piece_row(const PieceRow& row) noexcept;
+void subtract_row(const SubtractRow& row) noexcept;
 void take_row(const TakeRow& row) noexcept;
 void step_row(const StepRow& row) noexcept;
 void judge_row(const JudgeRow& row) noexcept;
 
 /// The reference forms, plain C++.
+void piece_row_scalar(const PieceRow& row) noexcept;
+void subtract_row_scalar(const SubtractRow& row) noexcept;
 void take_row_scalar(const TakeRow& row) noexcept;
 void step_row_scalar(const StepRow& row) noexcept;
 void judge_row_scalar(const JudgeRow& row) noexcept;
 
 #if XTRACK_WITH_HIGHWAY
+void piece_row_highway(const PieceRow& row) noexcept;
+void subtract_row_highway(const SubtractRow& row) noexcept;
 void take_row_highway(const TakeRow& row) noexcept;
 void step_row_highway(const StepRow& row) noexcept;
 void judge_row_highway(const JudgeRow& row) noexcept;

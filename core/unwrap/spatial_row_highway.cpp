@@ -70,6 +70,48 @@ HWY_INLINE V wrapped(V step, M up, M down) {
     return hn::IfThenElse(down, hn::Sub(step, turn), hn::IfThenElse(up, hn::Add(step, turn), step));
 }
 
+void pieces(const PieceRow& row) {
+    const D d;
+    const hn::Rebind<std::uint16_t, D> d16;
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    int begin = 0;
+    for (const PhasePiece& piece : row.pieces) {
+        const V add = hn::Set(d, piece.add_rad);
+        const auto component = hn::Set(d16, piece.component);
+        int x = begin;
+        // Whole vectors, past the end of the piece: what comes next overwrites the rest.
+        for (; x < piece.end && x + lanes <= row.count; x += lanes) {
+            hn::StoreU(hn::Add(hn::LoadU(d, row.phase_rad + x), add), d, row.unwrapped_rad + x);
+            hn::StoreU(component, d16, row.component + x);
+        }
+        for (; x < piece.end; ++x) {
+            row.unwrapped_rad[x] = row.phase_rad[x] + piece.add_rad;
+            row.component[x] = piece.component;
+        }
+        begin = piece.end;
+    }
+}
+
+void subtract(const SubtractRow& row) {
+    const D d;
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    if (row.count < lanes) {
+        subtract_row_scalar(row);
+        return;
+    }
+    const V pi = hn::Set(d, kPi);
+    const V minus_pi = hn::Set(d, -kPi);
+    for (int x = 0; x < row.count; x += lanes) {
+        // The last vector overlaps the one before it instead of running over the end.
+        const int at = x + lanes <= row.count ? x : row.count - lanes;
+        const V off = hn::Sub(hn::LoadU(d, row.phase_rad + at), hn::LoadU(d, row.from_rad + at));
+        const V turned = wrapped(off, hn::Lt(off, minus_pi), hn::Gt(off, pi));
+        // Rounding may lead past the ends. Min and Max do not keep NaN on every target.
+        const V inside = hn::Min(hn::Max(turned, minus_pi), pi);
+        hn::StoreU(hn::IfThenElse(hn::IsNaN(turned), turned, inside), d, row.difference_rad + at);
+    }
+}
+
 void step(const StepRow& row) {
     const D d;
     const int lanes = static_cast<int>(hn::Lanes(d));
@@ -153,10 +195,14 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace xtrack {
 
+HWY_EXPORT(pieces);
+HWY_EXPORT(subtract);
 HWY_EXPORT(take);
 HWY_EXPORT(step);
 HWY_EXPORT(judge);
 
+void piece_row_highway(const PieceRow& row) noexcept { HWY_DYNAMIC_DISPATCH(pieces)(row); }
+void subtract_row_highway(const SubtractRow& row) noexcept { HWY_DYNAMIC_DISPATCH(subtract)(row); }
 void take_row_highway(const TakeRow& row) noexcept { HWY_DYNAMIC_DISPATCH(take)(row); }
 void step_row_highway(const StepRow& row) noexcept { HWY_DYNAMIC_DISPATCH(step)(row); }
 void judge_row_highway(const JudgeRow& row) noexcept { HWY_DYNAMIC_DISPATCH(judge)(row); }

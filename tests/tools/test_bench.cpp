@@ -109,7 +109,10 @@ TEST(Bench, PutsThePapersTableBesideOurs) {
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     const json paper = json::parse(outcome.out).at("paper");
     EXPECT_EQ(paper.at("points"), 640 * 480);
-    EXPECT_THAT(paper.at("order"), HasSubstr("unique in the working volume"));
+    EXPECT_THAT(paper.at("order"), HasSubstr("in space"));
+    EXPECT_EQ(paper.at("period_px"), 32.0);
+    EXPECT_LT(paper.at("depth_error_mm"), 1.0);
+    expect_times(paper.at("decode_relative"), 2);
     expect_times(paper.at("read"), 2);
     expect_times(paper.at("decode"), 2);
     expect_times(paper.at("decode_depth"), 2);

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/bench/paper.hpp"
 
+#include <cmath>
 #include <memory>
 #include <optional>
 
-#include <xtrack/point_cloud.hpp>
+#include <utility>
+
+#include <xtrack/paper_decoder.hpp>
 
 #include "core/capture/image_codec.hpp"
-#include "tools/bench/ours.hpp"
 #include "tools/bench/scene.hpp"
 
 namespace xtrack::tools::bench {
@@ -15,6 +17,8 @@ namespace xtrack::tools::bench {
 namespace {
 
 constexpr Size kSize{640, 480};
+constexpr double kNear_mm = 600.0;
+constexpr double kFar_mm = 820.0;
 
 // The three images as a recording holds them. No file is opened: what the disk and the kernel's
 // cache of it would add is not ours.
@@ -49,6 +53,54 @@ class Reading {
     std::optional<Error> failed_;
 };
 
+// One whole decode of three images that are not in the cache: phase, unwrapping in space, depth,
+// and points where wanted.
+class Decoding {
+ public:
+    static Result<std::shared_ptr<Decoding>> create(const Scene& scene, bool relative, bool points,
+                                                    std::shared_ptr<FrameRing> ring) {
+        PaperSettings settings;
+        settings.mode = CaptureMode::burst;
+        settings.points = points;
+        // So much that one order alone is possible: else the wall might be a fringe nearer.
+        Rig rig = scene.rig();
+        rig.working_volume = WorkingVolume{kNear_mm, kFar_mm};
+        auto decoder = PaperDecoder::create(scene.fringes(), scene.size(), settings,
+                                            relative ? nullptr : &rig);
+        if (!decoder) {
+            return decoder.error();
+        }
+        auto decoding = std::make_shared<Decoding>(*std::move(decoder), std::move(ring));
+        decoding->run();  // finds the background, once
+        return decoding;
+    }
+    Decoding(PaperDecoder decoder, std::shared_ptr<FrameRing> ring)
+        : decoder_(std::move(decoder)), ring_(std::move(ring)) {}
+
+    void run() noexcept {
+        decoder_.reset();
+        for (const FramePtr& frame : ring_->next()) {
+            (void)decoder_.push(frame);
+        }
+    }
+    [[nodiscard]] const PaperDecoder& decoder() const noexcept { return decoder_; }
+
+ private:
+    PaperDecoder decoder_;
+    std::shared_ptr<FrameRing> ring_;
+};
+
+std::size_t points_of(const PaperDecoder& decoder) {
+    std::size_t count = 0;
+    const ImageView<const float> points = decoder.points_mm();
+    for (int v = 0; v < points.height; ++v) {
+        for (int i = 2; i < points.width; i += 3) {
+            count += std::isfinite(points.row(v)[i]) ? 1U : 0U;
+        }
+    }
+    return count;
+}
+
 }  // namespace
 
 Result<PaperTimes> measure_paper(std::size_t rounds, const std::function<void()>& step) {
@@ -56,35 +108,38 @@ Result<PaperTimes> measure_paper(std::size_t rounds, const std::function<void()>
     if (!scene) {
         return scene.error();
     }
-    const std::vector<Frame> frames = scene->frames(scene->three_step());
+    const std::vector<Frame> frames = scene->bumpy_frames(scene->fringes());
     const auto reading = Reading::create(frames);
     if (!reading) {
         return reading.error();
     }
     const auto ring = std::make_shared<FrameRing>(frames);
-    const auto whole = WholeDecode::create(*scene, scene->three_step(), ring);
-    if (!whole) {
-        return whole.error();
+    const auto metric = Decoding::create(*scene, false, true, ring);
+    const auto relative = Decoding::create(*scene, true, true, ring);
+    const auto plain = Decoding::create(*scene, false, false, ring);
+    for (const auto* made : {&metric, &relative, &plain}) {
+        if (!*made) {
+            return made->error();
+        }
     }
-    Result<PointCloud> cloud = PointCloud{};
-    const std::vector<Contender> contenders = {{"read", {}, {}, [&] { (*reading)->run(); }},
-                                               {"decode_depth", {}, {}, [&] { (*whole)->run(); }},
-                                               {"decode", {}, {}, [&] {
-                                                    (*whole)->run();
-                                                    cloud = make_point_cloud((*whole)->depth(),
-                                                                             scene->rig());
-                                                }}};
+    const std::vector<Contender> contenders = {
+        {"read", {}, {}, [&] { (*reading)->run(); }},
+        {"decode", {}, {}, [&] { (*metric)->run(); }},
+        {"decode_relative", {}, {}, [&] { (*relative)->run(); }},
+        {"decode_depth", {}, {}, [&] { (*plain)->run(); }}};
     const std::vector<Measured> measured = measure(contenders, rounds, step);
     if ((*reading)->failed()) {
         return *(*reading)->failed();
     }
-    if (!cloud) {
-        return cloud.error();
-    }
-    return PaperTimes{measured[0].times, measured[2].times, measured[1].times,
-                      "one period that is unique in the working volume (the paper: spatial "
-                      "unwrapping)",
-                      cloud->points_mm.size()};
+    PaperTimes times;
+    times.read = measured[0].times;
+    times.decode = measured[1].times;
+    times.decode_relative = measured[2].times;
+    times.decode_depth = measured[3].times;
+    times.points = points_of((*metric)->decoder());
+    times.period_px = scene->fringes().patterns.front().period_px;
+    times.depth_error_mm = scene->median_bumpy_error_mm((*metric)->decoder().depth());
+    return times;
 }
 
 }  // namespace xtrack::tools::bench

@@ -13,11 +13,13 @@ namespace xtrack::tools::bench {
 
 /// The 2012 paper's table on this machine: 640 x 480 pixels, 307,200 points of float x, y, z.
 struct PaperTimes {
-    Times read;          ///< three grey PNG images, from memory to pixels
-    Times decode;        ///< wrapped phase, fringe order, points of float x, y, z
-    Times decode_depth;  ///< the same to u16 depth and u8 quality, what the library works with
-    std::string method;  ///< how the fringe order was found
+    Times read;             ///< three grey PNG images, from memory to pixels
+    Times decode;           ///< wrapped phase, unwrapping in space, points of float x, y, z
+    Times decode_relative;  ///< the same without a rig: heights before a plane
+    Times decode_depth;     ///< with one, to u16 depth and u8 quality, without float points
     std::size_t points = 0;
+    double period_px = 0.0;
+    double depth_error_mm = 0.0;  ///< median; what is wrong takes no time that means anything
 };
 
 /// What the paper reports, of a 2.66 GHz Core 2 Duo.

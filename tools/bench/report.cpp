@@ -206,10 +206,13 @@ std::string table_of(const std::string& cpu, const PaperTimes& times) {
                times.points, times.decode.repetitions, cpu, "", "here", "paper") +
            row("Read", ms(times.read), kPaperRead_ms, "three grey PNG images, from memory") +
            row("Decode", ms(times.decode), kPaperDecode_ms,
-               "to float x, y, z; order: " + times.method) +
+               fmt::format("phase, unwrapping in space, float x, y, z; fringes of {:g} px",
+                           times.period_px)) +
            row("Display", "-", kPaperDisplay_ms, "this version has no viewer") +
-           fmt::format("Decode to u16 depth and u8 quality, without float points: {}\n",
-                       ms(times.decode_depth));
+           fmt::format(
+               "Decode without a rig, heights before a plane: {}; to u16 depth and u8 quality, "
+               "without float points: {}\ndepth is {:.2f} mm off the surface (median)\n",
+               ms(times.decode_relative), ms(times.decode_depth), times.depth_error_mm);
 }
 
 std::string json_of(const std::string& cpu, const PaperTimes& times) {
@@ -217,9 +220,12 @@ std::string json_of(const std::string& cpu, const PaperTimes& times) {
                     {"cores", 1},
                     {"paper",
                      {{"points", times.points},
-                      {"order", times.method},
+                      {"order", "unwrapped in space"},
+                      {"period_px", times.period_px},
+                      {"depth_error_mm", times.depth_error_mm},
                       {"read", json_of(times.read)},
                       {"decode", json_of(times.decode)},
+                      {"decode_relative", json_of(times.decode_relative)},
                       {"decode_depth", json_of(times.decode_depth)},
                       {"display", nullptr},
                       {"paper_read_ms", kPaperRead_ms},

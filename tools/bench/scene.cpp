@@ -22,6 +22,8 @@ constexpr double kFar_mm = 950.0;
 constexpr double kWall_mm = 700.0;
 constexpr double kWallSlope = 0.1;  // mm of depth a mm to the right
 constexpr double kFinePerCoarse = 8.0;
+constexpr double kFringe_px = 32.0;  // of the recordings that the paper's way is measured on
+constexpr double kBump_mm = 40.0;
 constexpr double kDark_grey = 30.0;
 constexpr double kContrast_grey = 180.0;
 constexpr double kNoDepth_mm = std::numeric_limits<double>::infinity();
@@ -79,6 +81,7 @@ Result<Scene> Scene::create(Size image) {
     scene.three_step_ = three_step_sequence(Axis::x, kProjectorSize, coarse_px);
     scene.dual_ = dual_sequence(Axis::x, kProjectorSize, coarse_px, fine_px);
     scene.gray_code_ = gray_code_sequence(Axis::x, kProjectorSize, fine_px);
+    scene.fringes_ = three_step_sequence(Axis::x, kProjectorSize, kFringe_px);
     return scene;
 }
 
@@ -98,7 +101,14 @@ double Scene::volume_middle_px(int u) const noexcept {
     return 0.5 * (coordinate_of_depth_px(u, kNear_mm) + coordinate_of_depth_px(u, kFar_mm));
 }
 
-std::vector<Frame> Scene::frames(const PatternSequence& patterns) const {
+double Scene::bumpy_wall_mm(int u, int v) const noexcept {
+    const double x = static_cast<double>(u) / size().width;
+    const double y = static_cast<double>(v) / size().height;
+    return wall_mm(u) - kBump_mm * std::sin(9.0 * x) * std::cos(7.0 * y);
+}
+
+template <typename Depth>
+std::vector<Frame> Scene::render(const PatternSequence& patterns, Depth z_mm) const {
     std::vector<Frame> set;
     std::mt19937 random(1);
     for (std::size_t n = 0; n < patterns.patterns.size(); ++n) {
@@ -109,9 +119,11 @@ std::vector<Frame> Scene::frames(const PatternSequence& patterns) const {
         frame.clean_row_end = size().height;
         frame.pixels.resize(size().width, size().height);
         for (int u = 0; u < size().width; ++u) {
-            const double light = intensity(patterns.patterns[n], coordinate_px(u));
-            const auto grey = static_cast<int>(std::lround(kDark_grey + kContrast_grey * light));
             for (int v = 0; v < size().height; ++v) {
+                const double coordinate = coordinate_of_depth_px(u, z_mm(u, v));
+                const double light = intensity(patterns.patterns[n], coordinate);
+                const auto grey =
+                    static_cast<int>(std::lround(kDark_grey + kContrast_grey * light));
                 const int noise_grey = static_cast<int>(random() % 3U) - 1;
                 frame.pixels.at(u, v) = static_cast<std::uint8_t>(grey + noise_grey);
             }
@@ -121,16 +133,33 @@ std::vector<Frame> Scene::frames(const PatternSequence& patterns) const {
     return set;
 }
 
-double Scene::median_error_mm(const DepthFrame& depth) const {
+std::vector<Frame> Scene::frames(const PatternSequence& patterns) const {
+    return render(patterns, [this](int u, int) { return wall_mm(u); });
+}
+
+std::vector<Frame> Scene::bumpy_frames(const PatternSequence& patterns) const {
+    return render(patterns, [this](int u, int v) { return bumpy_wall_mm(u, v); });
+}
+
+template <typename Depth>
+double Scene::median_error_of(const DepthFrame& depth, Depth z_mm) const {
     std::vector<double> errors_mm;
     for (int v = 0; v < depth.depth.height(); ++v) {
         for (int u = 0; u < depth.depth.width(); ++u) {
             const std::uint16_t steps = depth.depth.at(u, v);
             errors_mm.push_back(steps == 0 ? kNoDepth_mm
-                                           : std::fabs(steps * depth.depth_unit_mm - wall_mm(u)));
+                                           : std::fabs(steps * depth.depth_unit_mm - z_mm(u, v)));
         }
     }
     return median(std::move(errors_mm));
+}
+
+double Scene::median_error_mm(const DepthFrame& depth) const {
+    return median_error_of(depth, [this](int u, int) { return wall_mm(u); });
+}
+
+double Scene::median_bumpy_error_mm(const DepthFrame& depth) const {
+    return median_error_of(depth, [this](int u, int v) { return bumpy_wall_mm(u, v); });
 }
 
 double Scene::median_error_mm(std::span<const float> xyz_mm) const {

@@ -47,11 +47,17 @@ class Scene {
     [[nodiscard]] const PatternSequence& three_step() const noexcept { return three_step_; }
     [[nodiscard]] const PatternSequence& dual() const noexcept { return dual_; }
     [[nodiscard]] const PatternSequence& gray_code() const noexcept { return gray_code_; }
+    /// Three steps of a short period, which repeats in the volume many times.
+    [[nodiscard]] const PatternSequence& fringes() const noexcept { return fringes_; }
 
     /// One image of every pattern, with noise of a grey level.
     [[nodiscard]] std::vector<Frame> frames(const PatternSequence& patterns) const;
 
+    /// The same of a wall with bumps of up to 40 mm, so that no row of fringes is like the next.
+    [[nodiscard]] std::vector<Frame> bumpy_frames(const PatternSequence& patterns) const;
+
     [[nodiscard]] double wall_mm(int u) const noexcept;
+    [[nodiscard]] double bumpy_wall_mm(int u, int v) const noexcept;
     /// Projector px that column u of the camera sees.
     [[nodiscard]] double coordinate_px(int u) const noexcept;
     /// Middle of what the working volume can reach in column u, projector px.
@@ -59,17 +65,24 @@ class Scene {
 
     /// Median of |depth - wall|, mm; infinite where most pixels have no depth.
     [[nodiscard]] double median_error_mm(const DepthFrame& depth) const;
+    [[nodiscard]] double median_bumpy_error_mm(const DepthFrame& depth) const;
     /// The same of x, y, z of every pixel, row by row, NaN where there is no depth.
     [[nodiscard]] double median_error_mm(std::span<const float> xyz_mm) const;
 
  private:
     Scene() = default;
     [[nodiscard]] double coordinate_of_depth_px(int u, double z_mm) const noexcept;
+    /// @param z_mm depth of the pixel (u, v)
+    template <typename Depth>
+    [[nodiscard]] std::vector<Frame> render(const PatternSequence& patterns, Depth z_mm) const;
+    template <typename Depth>
+    [[nodiscard]] double median_error_of(const DepthFrame& depth, Depth z_mm) const;
 
     Rig rig_;
     PatternSequence three_step_;
     PatternSequence dual_;
     PatternSequence gray_code_;
+    PatternSequence fringes_;
 };
 
 }  // namespace xtrack::tools::bench

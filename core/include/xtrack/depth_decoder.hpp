@@ -32,6 +32,7 @@ enum class RejectReason {
     pattern_out_of_range,  ///< its pattern index is not in the sequence
     no_colour,             ///< a grey image of a colour pattern
     time_backwards,        ///< its stamp is before that of the frame pushed last
+    on_hold,               ///< the decoder was told to take none (PaperDecoder)
 };
 
 /// One sentence for logs. Static storage.

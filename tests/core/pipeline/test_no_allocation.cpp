@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <xtrack/depth_decoder.hpp>
+#include <xtrack/paper_decoder.hpp>
 
 #include "tests/core/pipeline/plane_scene.hpp"
+#include "tests/core/pipeline/step_scene.hpp"
 #include "tests/support/allocation_counter.hpp"
 
 namespace xtrack {
@@ -51,6 +53,47 @@ TEST(NoAllocation, DecodingAllocatesNothing) {
     }
     // Colour: a depth with every image of the finest pattern.
     expect_none(rgb_sequence(Axis::x, {512, 384}, {512.0, 64.0}), PixelFormat::bgr8, 6);
+}
+
+void expect_none_in_paper_mode(const Rig* rig) {
+    if (!test::counts_allocations()) {
+        GTEST_SKIP()
+            << "allocations cannot be counted here: no glibc, or a sanitizer is in its way";
+    }
+    const PatternSequence patterns = three_step_sequence(Axis::x, {1280, 768}, 32.0);
+    auto decoder = PaperDecoder::create(patterns, test::StepScene::kCamera, {}, rig);
+    ASSERT_TRUE(decoder) << decoder.error().message;
+    test::StepScene scene;
+    std::vector<FramePtr> frames;
+    for (int n = 0; n < 21; ++n) {
+        scene.plate_left_mm = 4.0 * n - 60.0;
+        scene.plate_right_mm = 4.0 * n + 40.0;
+        auto frame = scene.frame(patterns, n % 3, n);
+        frame->clean_row_begin = n % 5 == 4 ? 9 : 0;
+        frames.push_back(frame);
+    }
+    for (int n = 0; n < 3; ++n) {  // the background is found
+        decoder->push(frames[static_cast<std::size_t>(n)]);
+    }
+    const long before = test::allocations();
+    int depths = 0;
+    PaperSettings settings;
+    for (std::size_t n = 3; n < frames.size(); ++n) {
+        settings.mode = n < 9 ? CaptureMode::sliding : CaptureMode::burst;
+        ASSERT_TRUE(decoder->set_settings(settings));
+        depths += decoder->push(frames[n]).state == DecodeState::depth_ready ? 1 : 0;
+    }
+    settings.mode = CaptureMode::hold;
+    ASSERT_TRUE(decoder->set_settings(settings));
+    decoder->decode_again();
+    EXPECT_EQ(test::allocations() - before, 0);
+    EXPECT_EQ(depths, 6 + 4);
+}
+
+TEST(NoAllocation, PaperModeAllocatesNothing) {
+    const Rig rig = test::StepScene::rig();
+    expect_none_in_paper_mode(&rig);
+    expect_none_in_paper_mode(nullptr);
 }
 
 }  // namespace

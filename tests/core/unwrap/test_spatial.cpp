@@ -297,5 +297,53 @@ TEST(Spatial, UnwrappingAllocatesNothing) {
     EXPECT_GT(components, 2U);
 }
 
+TEST(Spatial, WhatIsAskedOfAPixelIsWhatItsRowIsWritten) {
+    const auto scene = test::make_phase_scene(test::PhaseSceneKind::hand, 3);
+    const Size size = scene.phase_rad.size();
+    auto made = SpatialUnwrapper::create(size, {});
+    ASSERT_TRUE(made);
+    const auto found = made->solve(scene.phase_rad.view(), scene.modulation.view());
+    ASSERT_GE(found.size(), 2U);
+    std::vector<std::int32_t> turns(found.size());
+    for (std::size_t i = 0; i < turns.size(); ++i) {
+        turns[i] = 3 * static_cast<std::int32_t>(i) - 2;
+    }
+    std::vector<float> unwrapped(static_cast<std::size_t>(size.width));
+    std::vector<std::uint16_t> component(unwrapped.size());
+    int known = 0;
+    for (int y = 0; y < size.height; y += 5) {
+        made->write_row(y, scene.phase_rad.row(y), turns, unwrapped.data(), component.data());
+        for (int x = 0; x < size.width; ++x) {
+            const auto i = static_cast<std::size_t>(x);
+            const PhasePlace place = made->place(x, y);
+            ASSERT_EQ(place.component, component[i]);
+            if (place.component == 0) {
+                ASSERT_TRUE(std::isnan(unwrapped[i]));
+                continue;
+            }
+            const int order = place.turns + turns[place.component - 1U];
+            ASSERT_NEAR(
+                unwrapped[i],
+                static_cast<double>(scene.phase_rad.at(x, y)) + 2.0 * std::numbers::pi * order,
+                1e-4);
+            ++known;
+        }
+    }
+    EXPECT_GT(known, 40000);
+}
+
+TEST(Spatial, SettingsChangeBetweenImages) {
+    const auto scene = test::make_phase_scene(test::PhaseSceneKind::hand, 3);
+    auto made = SpatialUnwrapper::create(scene.phase_rad.size(), {});
+    ASSERT_TRUE(made);
+    ASSERT_GE(made->solve(scene.phase_rad.view(), scene.modulation.view()).size(), 2U);
+    SpatialUnwrapSettings settings;
+    settings.min_component_px = 100000;
+    ASSERT_TRUE(made->set_settings(settings));
+    EXPECT_EQ(made->solve(scene.phase_rad.view(), scene.modulation.view()).size(), 1U);
+    settings.min_support = 2.0;
+    EXPECT_FALSE(made->set_settings(settings));
+}
+
 }  // namespace
 }  // namespace xtrack

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/unwrap/spatial_row.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -115,10 +116,37 @@ Bits judged(void (*form)(const JudgeRow&) noexcept) {
     return bits;
 }
 
+Bits subtracted(void (*form)(const SubtractRow&) noexcept, int count) {
+    const Rows rows;
+    std::vector<float> out(kPixels, -7.0F);
+    form({count, rows[0], rows[1], out.data()});
+    Bits bits;
+    append(bits, out);
+    return bits;
+}
+
+Bits pieced(void (*form)(const PieceRow&) noexcept, int count) {
+    const Rows rows;
+    std::vector<float> out(kPixels, -7.0F);
+    std::vector<std::uint16_t> component(kPixels, 77);
+    std::vector<PhasePiece> pieces;
+    for (int end = 0, id = 0; end < count; ++id) {
+        end = std::min(count, end + 1 + 7 * id % 23);
+        pieces.push_back({end, id % 3 == 0 ? kNone : 6.25F * static_cast<float>(id),
+                          static_cast<std::uint16_t>(id)});
+    }
+    form({count, pieces, rows[0], out.data(), component.data()});
+    Bits bits(component.begin(), component.end());
+    append(bits, out);
+    return bits;
+}
+
 TEST(SpatialRow, EveryInstructionSetGivesTheBitsOfTheScalarForm) {
     test::for_each_target([] {
         for (const int count : {1, 17, 64, 65, kPixels}) {
             EXPECT_EQ(taken(take_row, count), taken(take_row_scalar, count)) << count;
+            EXPECT_EQ(subtracted(subtract_row, count), subtracted(subtract_row_scalar, count));
+            EXPECT_EQ(pieced(piece_row, count), pieced(piece_row_scalar, count)) << count;
         }
         EXPECT_EQ(stepped(step_row), stepped(step_row_scalar));
         EXPECT_EQ(judged(judge_row), judged(judge_row_scalar));
@@ -145,6 +173,18 @@ TEST(SpatialRow, StepsWrapTowardTheNearerTurn) {
     EXPECT_NEAR(right_step[kRowMargin + 1], -0.7832F, 1e-4F);
     EXPECT_TRUE(std::isnan(right_step[kRowMargin + 2]));
     EXPECT_EQ(below_step[kRowMargin], -1.0F);
+}
+
+TEST(SpatialRow, DifferencesStayWithinATurn) {
+    const std::vector<float> phase{3.0F, -3.0F, 1.0F, kNone, 3.1415927F};
+    const std::vector<float> from{-3.0F, 3.0F, 0.5F, 0.0F, -3.1415927F};
+    std::vector<float> off(5);
+    subtract_row_scalar({5, phase.data(), from.data(), off.data()});
+    EXPECT_NEAR(off[0], -0.2832F, 1e-4F);
+    EXPECT_NEAR(off[1], 0.2832F, 1e-4F);
+    EXPECT_EQ(off[2], 0.5F);
+    EXPECT_TRUE(std::isnan(off[3]));
+    EXPECT_NEAR(off[4], 0.0F, 1e-6F);
 }
 
 TEST(SpatialRow, DeviationIsFromTheMedianOfItsNeighbours) {

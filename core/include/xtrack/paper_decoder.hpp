@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include <xtrack/depth.hpp>
+#include <xtrack/depth_decoder.hpp>
+#include <xtrack/frame.hpp>
+#include <xtrack/image.hpp>
+#include <xtrack/pattern.hpp>
+#include <xtrack/phase_map.hpp>
+#include <xtrack/result.hpp>
+#include <xtrack/rig.hpp>
+
+namespace xtrack {
+
+/// Which images a decode is made of: the three modes of the paper.
+/// @since 0.1
+enum class CaptureMode {
+    sliding,  ///< "Default": every image gives a decode, from the newest of each pattern
+    burst,    ///< only whole sets: each decode is of images that no other decode has used
+    hold,     ///< "On Hold": takes no images; the last set again, under new settings
+};
+
+/// Settings of the PaperDecoder; all of them may change while it runs.
+/// @since 0.1
+struct PaperSettings {
+    CaptureMode mode = CaptureMode::sliding;
+    /// Fringe amplitude below which a pixel is masked, grey levels, 0 ... 127.
+    double min_modulation = 6.0;
+    /// Mask pixels that reach 255 in any image: clipped sines have wrong phases.
+    bool mask_saturated = true;
+    /// Steps between neighbours that deviate by more from those beside them do not connect, rad,
+    /// 0.1 ... 3.1.
+    double step_limit_rad = 2.0;
+    /// Share of the contact of two surfaces that must agree before they are joined, 0 ... 1.
+    double min_support = 0.5;
+    /// Surfaces of fewer pixels are masked, 1 ... kMaxImagePixels.
+    int min_component_px = 64;
+    /// Whether points() is made.
+    bool points = true;
+};
+
+/// @return invalid_argument that names the first setting out of its documented range
+/// @thread any
+/// @since 0.1
+[[nodiscard]] Result<void> validate(const PaperSettings& settings);
+
+/// Pixels that are connected: their fringe orders are right against each other.
+/// @since 0.1
+struct PaperComponent {
+    std::uint16_t id = 0;  ///< value in components(): 1, 2, ...; the most pixels first
+    int pixels = 0;
+    /// Whole fringes that were added to all of it.
+    int order = 0;
+    /// More than one order was possible, and nothing said which: it may lie whole fringes off.
+    bool ambiguous = false;
+};
+
+/// Fringe images in, depth out, as the 2012 paper does it: phase from the plain steps of one
+/// period, the fringe order from the picture itself, outward from what is clearest
+/// (quality-guided unwrapping in space). Colour fringes and Gray codes are not used; of several
+/// periods the shortest is, and frames of other patterns are passed over.
+///
+/// Surfaces that nothing connects leave open by how many whole fringes they lie apart. Where a
+/// shadow of the projector parts them, the fringe that leaves one edge arrives at the other, which
+/// says it. Else a component lies where it was a frame ago. Else, and always within it:
+///  - with a rig, where its depths lie in the working volume: the largest component as far away as
+///    it can be, others in the middle of that. depth() is in millimetres.
+///  - without one, nearest to the background; depth() is relative (`metric` false): the phase less
+///    that of the background, kMmPerProjectorPx for each projector pixel, before kBackground_mm.
+///    The background is what learn_background() was shown; until then, the plane in which the
+///    largest surface of the first decode lies along the image's border. What stands out most is
+///    taken to be in front.
+///
+/// push() allocates nothing, except while no background is known without a rig.
+/// @thread one at a time
+/// @ownership holds the FramePtrs of its window, at most eight a pattern; copies no pixels
+/// @since 0.1
+class PaperDecoder {
+ public:
+    /// @param image width and height of the frames that will be pushed, px
+    /// @param rig null, or without a projector: relative depth. Copied.
+    /// @errors unsupported: no period of three or more phases, or colour fringes;
+    ///         invalid_argument: settings out of range, an image that is_image_size() does not hold
+    ///         for, singular geometry, a projector or camera size that disagrees; io: no memory
+    /// @thread any
+    [[nodiscard]] static Result<PaperDecoder> create(const PatternSequence& patterns, Size image,
+                                                     const PaperSettings& settings = {},
+                                                     const Rig* rig = nullptr);
+    PaperDecoder(PaperDecoder&&) noexcept;
+    PaperDecoder& operator=(PaperDecoder&&) noexcept;
+    ~PaperDecoder();
+
+    /// Takes one frame; on hold it is rejected. Equal stamps are allowed.
+    DecodeStatus push(const FramePtr& frame) noexcept;
+
+    /// Decodes the images of the last decode once more, under the settings of now.
+    /// @return need_more where there was none yet
+    DecodeStatus decode_again() noexcept;
+
+    /// Settings of the next decode; a change of `mode` begins with the next frame. On hold the
+    /// images at hand are decoded again at once.
+    /// @errors invalid_argument, and nothing changed
+    Result<void> set_settings(const PaperSettings& settings);
+    [[nodiscard]] const PaperSettings& settings() const noexcept;
+
+    /// Takes the last decode for the empty scene: relative depth is then before it, until this is
+    /// called again. Takes tens of milliseconds; allocates.
+    /// @errors unsupported: nothing was decoded yet; io: no memory
+    Result<void> learn_background();
+    /// Forgets the background: the next decode shows a plane again.
+    void forget_background() noexcept;
+
+    /// The newest depth, of the stamp in the middle of its images; no depth in any pixel before the
+    /// first depth_ready. All results are valid until the next call that is not const.
+    [[nodiscard]] const DepthFrame& depth() const noexcept;
+    /// The depth as points of the camera frame, mm: rows of x, y, z for every pixel, NaN where
+    /// there is no depth. Without a rig of a camera whose image is as wide as it is far. Empty
+    /// without PaperSettings::points.
+    [[nodiscard]] ImageView<const float> points_mm() const noexcept;
+    /// Wrapped phase and modulation.
+    [[nodiscard]] const PhaseMap& phase() const noexcept;
+    /// With a rig: the projector phase with all its whole turns, rad. Without: what it is off the
+    /// background's. NaN where masked.
+    [[nodiscard]] const Image<float>& unwrapped_rad() const noexcept;
+    /// Id of each pixel's component, 0 = none, and what is known of them.
+    [[nodiscard]] const Image<std::uint16_t>& component() const noexcept;
+    [[nodiscard]] std::span<const PaperComponent> components() const noexcept;
+
+    /// Forgets all frames, and where components were; settings and background stay.
+    void reset() noexcept;
+
+    /// Frames until the first depth when none is lost.
+    [[nodiscard]] int frames_needed() const noexcept;
+
+    /// Where relative depth has its background, and how much nearer a projector pixel is.
+    static constexpr double kBackground_mm = 1000.0;
+    static constexpr double kMmPerProjectorPx = 2.0;
+
+ private:
+    struct Impl;
+    explicit PaperDecoder(std::unique_ptr<Impl> impl) noexcept;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace xtrack

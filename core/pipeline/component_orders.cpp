@@ -1,0 +1,342 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/pipeline/component_orders.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace xtrack {
+namespace {
+
+constexpr auto kPerTurn = static_cast<float>(0.5 / std::numbers::pi);
+// Pixels are asked on a grid, of large components on every second or fourth line and column of it.
+constexpr int kGrid_px = 4;
+constexpr int kLargePixels = 15000;
+constexpr int kHugePixels = 60000;
+// The ends of the volume are this sharp: three sigma of the phase at weak modulation, turns.
+constexpr float kVolumeSlack = 0.1F;
+// An order is possible if so much of the component then lies in the volume.
+constexpr double kPossibleShare = 0.9;
+// Share of the pixels that must agree on where the component was a frame ago.
+constexpr double kBeforeShare = 0.25;
+// Less is the background itself, turns.
+constexpr float kStandsOut = 0.1F;
+// Shadows: their width, how far from their border the phase is not mixed, and how far from there
+// its slope is measured, px.
+constexpr int kLeastShadow_px = 2;
+constexpr int kShadowsOfImage = 3;  // a third of the image at most
+constexpr int kClear_px = 2;
+constexpr int kSlope_px = 4;
+// The fringe goes on across a shadow if it is off by no more, turns; a gap that is no shadow fits
+// by chance in a quarter of its lines.
+constexpr float kBridgeFit = 0.12F;
+constexpr int kLeastBridges = 6;
+constexpr double kBridgeShare = 0.6;
+constexpr std::size_t kMostBridges = 8192;
+// What a shadow may be measured from: scraps at the edges of things that move are of no surface.
+constexpr int kBridgeablePixels = 1500;
+
+}  // namespace
+
+void ComponentOrders::Votes::add(int order, int count) noexcept {
+    if (order < -reach_ || order > reach_) {
+        return;
+    }
+    counts_[static_cast<std::size_t>(order + reach_)] += count;
+    const bool first = low_ > high_;
+    low_ = first ? order : std::min(low_, order);
+    high_ = first ? order : std::max(high_, order);
+    total_ += count;
+}
+
+void ComponentOrders::Votes::clear() noexcept {
+    for (int order = low_; order <= high_; ++order) {
+        counts_[static_cast<std::size_t>(order + reach_)] = 0;
+    }
+    low_ = 0;
+    high_ = -1;
+    total_ = 0;
+}
+
+int ComponentOrders::Votes::of(int order) const noexcept {
+    return order < low_ || order > high_ ? 0 : counts_[static_cast<std::size_t>(order + reach_)];
+}
+
+int ComponentOrders::Votes::best() const noexcept {
+    int found = low_;
+    for (int order = low_; order <= high_; ++order) {
+        found = of(order) > of(found) ? order : found;
+    }
+    return found;
+}
+
+ComponentOrders::ComponentOrders(Size image, Axis axis, const Triangulation* geometry,
+                                 double period_px, int coded_length_px)
+    : size_(image), along_x_(axis == Axis::x), metric_(geometry != nullptr) {
+    const Size grid{(image.width + kGrid_px - 1) / kGrid_px,
+                    (image.height + kGrid_px - 1) / kGrid_px};
+    // Values of a component span at most the projector, and so do orders, both ways.
+    const int reach = 2 * static_cast<int>(std::ceil(coded_length_px / period_px)) + 4;
+    for (Votes* votes : {&home_, &possible_, &before_, &sure_before_, &bridged_, &sure_bridged_}) {
+        votes->create(reach);
+    }
+    const auto samples =
+        static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height);
+    samples_.reserve(samples);
+    bridges_.reserve(kMostBridges);
+    const auto pixels =
+        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+    const auto most = std::min<std::size_t>(pixels, kMaxPhaseComponents);
+    orders_.reserve(most);
+    ambiguous_.reserve(most);
+    ambiguous_before_.reserve(most);
+    if (!metric_) {
+        return;
+    }
+    low_turns_.resize(grid.width, grid.height);
+    high_turns_.resize(grid.width, grid.height);
+    const double first_px = -0.5;
+    const double last_px = coded_length_px - 0.5;
+    for (int j = 0; j < grid.height; ++j) {
+        for (int i = 0; i < grid.width; ++i) {
+            const auto reached =
+                geometry->reach(std::min(i * kGrid_px + kGrid_px / 2, image.width - 1),
+                                std::min(j * kGrid_px + kGrid_px / 2, image.height - 1));
+            const VolumeReach ends = reached.value_or(VolumeReach{first_px, last_px});
+            const double near_px = std::clamp(ends.near_px, first_px, last_px);
+            const double far_px = std::clamp(ends.far_px, first_px, last_px);
+            far_is_low_ = ends.far_px <= ends.near_px;
+            low_turns_.at(i, j) = static_cast<float>(std::min(near_px, far_px) / period_px);
+            high_turns_.at(i, j) = static_cast<float>(std::max(near_px, far_px) / period_px);
+        }
+    }
+}
+
+void ComponentOrders::forget() noexcept {
+    orders_.clear();
+    ambiguous_.clear();
+    standing_out_ = 0.0;
+}
+
+float ComponentOrders::value_at(const Input& input, int x, int y,
+                                std::uint16_t& id) const noexcept {
+    const PhasePlace place = input.unwrapper.place(x, y);
+    id = place.component;
+    return kPerTurn * input.phase_rad.at(x, y) + static_cast<float>(place.turns);
+}
+
+// Where a projector's shadow lies between two surfaces, the ray that grazes one of them arrives at
+// the other: the projector's phase goes on across it, turns and all.
+void ComponentOrders::bridge_line(const Input& input, int line) noexcept {
+    const int length = along_x_ ? size_.width : size_.height;
+    const std::ptrdiff_t next = along_x_ ? 1 : input.phase_rad.stride;
+    const float* phase = along_x_ ? input.phase_rad.row(line) : input.phase_rad.data + line;
+    const auto raw_at = [&](int i, std::uint16_t& id) {
+        const int x = along_x_ ? i : line;
+        const int y = along_x_ ? line : i;
+        const float taken_off =
+            input.reference_rad.empty() ? 0.0F : kPerTurn * input.reference_rad.at(x, y);
+        return value_at(input, x, y, id) + taken_off;
+    };
+    // The value at a border of the shadow, going by what lies `away` from it.
+    const auto edge = [&](int border, int away, std::uint16_t& id) {
+        std::uint16_t beyond = 0;
+        const float clear = raw_at(border + away * kClear_px, id);
+        const float far = raw_at(border + away * (kClear_px + kSlope_px), beyond);
+        id = id == beyond ? id : std::uint16_t{0};
+        constexpr float kShare = static_cast<float>(kClear_px) / kSlope_px;
+        return clear + kShare * (clear - far);
+    };
+    constexpr int kMargin = kClear_px + kSlope_px;
+    int last_seen = -1;
+    for (int i = 0; i < length; ++i) {
+        if (std::isnan(phase[i * next])) {
+            continue;
+        }
+        const int gap = i - last_seen - 1;
+        const int from = last_seen;
+        last_seen = i;
+        if (gap < kLeastShadow_px || gap > length / kShadowsOfImage || from < kMargin ||
+            i + kMargin >= length || bridges_.size() >= kMostBridges) {
+            continue;
+        }
+        Bridge bridge;
+        const float left = edge(from, -1, bridge.from);
+        const float right = edge(i, 1, bridge.to);
+        if (bridge.from == bridge.to || bridge.from == 0 || bridge.to == 0 ||
+            !std::isfinite(left - right)) {
+            continue;
+        }
+        const float orders = std::nearbyint(left - right);
+        bridge.orders = static_cast<std::int32_t>(orders);
+        bridge.fits = std::fabs(left - right - orders) <= kBridgeFit;
+        bridges_.push_back(bridge);
+    }
+}
+
+void ComponentOrders::find_bridges(const Input& input) noexcept {
+    bridges_.clear();
+    if (input.components.size() < 2) {
+        return;
+    }
+    const int lines = along_x_ ? size_.height : size_.width;
+    for (int line = kGrid_px / 2; line < lines; line += kGrid_px) {
+        bridge_line(input, line);
+    }
+}
+
+void ComponentOrders::sample(const Input& input, const PhaseComponent& component) noexcept {
+    samples_.clear();
+    const int step = kGrid_px * (component.pixels >= kHugePixels    ? 4
+                                 : component.pixels >= kLargePixels ? 2
+                                                                    : 1);
+    const auto first = [&](int begin) { return (begin + step - 1) / step * step + kGrid_px / 2; };
+    for (int y = first(component.top_px - kGrid_px / 2); y <= component.bottom_px; y += step) {
+        for (int x = first(component.left_px - kGrid_px / 2); x <= component.right_px; x += step) {
+            std::uint16_t id = 0;
+            const float value = value_at(input, x, y, id);
+            if (id == component.id) {
+                samples_.push_back({x, y, value});
+            }
+        }
+    }
+    if (samples_.empty()) {
+        std::uint16_t id = 0;
+        samples_.push_back({component.seed_x_px, component.seed_y_px,
+                            value_at(input, component.seed_x_px, component.seed_y_px, id)});
+    }
+}
+
+void ComponentOrders::vote(const Input& input, const Sample& s) noexcept {
+    float home = 0.0F;
+    if (metric_) {
+        const float low = low_turns_.at(s.x / kGrid_px, s.y / kGrid_px);
+        const float high = high_turns_.at(s.x / kGrid_px, s.y / kGrid_px);
+        home = 0.5F * (low + high);
+        const int first = static_cast<int>(std::ceil(low - kVolumeSlack - s.value));
+        const int last = static_cast<int>(std::floor(high + kVolumeSlack - s.value));
+        for (int order = first; order <= last; ++order) {
+            possible_.add(order);
+        }
+    }
+    home_.add(static_cast<int>(std::lround(home - s.value)));
+    const float before = kPerTurn * input.before_rad.at(s.x, s.y);
+    const std::uint16_t id = input.component_before.at(s.x, s.y);
+    // What was background says nothing of what has come before it.
+    if (id != 0 && id <= ambiguous_before_.size() && std::isfinite(before) &&
+        (metric_ || std::fabs(before) > kStandsOut)) {
+        const auto order = static_cast<int>(std::lround(before - s.value));
+        before_.add(order);
+        if (ambiguous_before_[id - 1U] == 0) {
+            sure_before_.add(order);
+        }
+    }
+}
+
+void ComponentOrders::vote_bridges(const Input& input, std::uint16_t id) noexcept {
+    bridge_misses_ = 0;
+    double mean = 0.0;
+    for (const Sample& s : samples_) {
+        mean += static_cast<double>(s.value) / static_cast<double>(samples_.size());
+    }
+    for (const Bridge& bridge : bridges_) {
+        const bool forth = bridge.to == id && bridge.from < id;
+        const bool back = bridge.from == id && bridge.to < id;
+        if (!forth && !back) {
+            continue;
+        }
+        const std::size_t known = (forth ? bridge.from : bridge.to) - 1U;
+        if (input.components[known].pixels < kBridgeablePixels) {
+            continue;
+        }
+        const int order = orders_[known] + (forth ? bridge.orders : -bridge.orders);
+        // Nothing is behind the background: that gap is no shadow.
+        const bool behind =
+            !metric_ && input.front * (mean + order) < -static_cast<double>(kStandsOut);
+        if (!bridge.fits || behind) {
+            bridge_misses_ += behind ? 0 : 1;
+            continue;
+        }
+        bridged_.add(order);
+        if (ambiguous_[known] == 0) {
+            sure_bridged_.add(order);
+        }
+    }
+}
+
+void ComponentOrders::decide(std::size_t index) noexcept {
+    const double samples = static_cast<double>(samples_.size());
+    const auto is_possible = [&](int order) {
+        return !metric_ || possible_.of(order) >= kPossibleShare * samples;
+    };
+    int count = 0;
+    int least = 0;
+    int most = 0;
+    for (int order = possible_.low(); order <= possible_.high(); ++order) {
+        if (is_possible(order)) {
+            least = count++ == 0 ? order : least;
+            most = order;
+        }
+    }
+    const int bridged = bridged_.best();
+    const int before = before_.best();
+    bool sure = false;
+    int order = home_.best();
+    if (metric_ && count <= 1) {
+        // Where none is possible the most of it is kept, and the volume cuts off the rest.
+        order = possible_.best();
+        sure = count == 1;
+    } else if (bridged_.of(bridged) >= kLeastBridges && is_possible(bridged) &&
+               bridged_.of(bridged) >= kBridgeShare * (bridged_.total() + bridge_misses_)) {
+        order = bridged;
+        sure = 2 * sure_bridged_.of(bridged) >= bridged_.of(bridged);
+    } else if (before_.of(before) >= kBeforeShare * samples && is_possible(before)) {
+        order = before;
+        sure = 2 * sure_before_.of(before) >= before_.of(before);
+    } else if (index == 0) {
+        // What most of the image is, is the background: the farthest that it can be.
+        order = metric_ ? (far_is_low_ ? least : most) : order;
+        sure = !metric_;
+    } else if (!is_possible(order)) {
+        order = possible_.best();
+    }
+    orders_[index] = order;
+    ambiguous_[index] = sure ? 0 : 1;
+}
+
+void ComponentOrders::choose(const Input& input) noexcept {
+    ambiguous_before_.swap(ambiguous_);
+    orders_.assign(input.components.size(), 0);
+    ambiguous_.assign(input.components.size(), 1);
+    standing_out_ = 0.0;
+    find_bridges(input);
+    for (std::size_t i = 0; i < std::min(input.components.size(), kMostComponents); ++i) {
+        sample(input, input.components[i]);
+        for (const Sample& s : samples_) {
+            vote(input, s);
+        }
+        vote_bridges(input, input.components[i].id);
+        decide(i);
+        for (Votes* votes :
+             {&home_, &possible_, &before_, &sure_before_, &bridged_, &sure_bridged_}) {
+            votes->clear();
+        }
+        for (const Sample& s : samples_) {
+            const float height = s.value + static_cast<float>(orders_[i]);
+            standing_out_ += std::fabs(height) > kStandsOut && ambiguous_[i] == 0
+                                 ? static_cast<double>(height)
+                                 : 0.0;
+        }
+    }
+    for (std::size_t i = kMostComponents; i < input.components.size(); ++i) {
+        const PhaseComponent& c = input.components[i];
+        std::uint16_t id = 0;
+        const float value = value_at(input, c.seed_x_px, c.seed_y_px, id);
+        const int gx = c.seed_x_px / kGrid_px;
+        const int gy = c.seed_y_px / kGrid_px;
+        const float home = metric_ ? 0.5F * (low_turns_.at(gx, gy) + high_turns_.at(gx, gy)) : 0.0F;
+        orders_[i] = static_cast<std::int32_t>(std::lround(home - value));
+    }
+}
+
+}  // namespace xtrack

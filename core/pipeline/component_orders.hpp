@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <xtrack/image.hpp>
+#include <xtrack/pattern.hpp>
+
+#include "core/depth/triangulation.hpp"
+#include "core/unwrap/spatial.hpp"
+
+namespace xtrack {
+
+/// Whole fringes for surfaces that nothing in the picture connects: PaperDecoder says by what
+/// rules. Every rule is put to the vote of pixels on a grid, as single ones are noise.
+///
+/// "Value" is a pixel's phase with its turns within the component, in turns; "order" what is added
+/// to the values of a whole component.
+class ComponentOrders {
+ public:
+    /// Components after this many, the smallest, are put where their seeds say.
+    static constexpr std::size_t kMostComponents = 256;
+
+    /// Allocates for all images to come.
+    /// @param geometry null: values are heights above a background at 0
+    /// @param period_px, coded_length_px of the pattern
+    /// @param axis along which shadows fall in the image, as far as camera and projector agree
+    ComponentOrders(Size image, Axis axis, const Triangulation* geometry, double period_px,
+                    int coded_length_px);
+
+    struct Input {
+        const SpatialUnwrapper& unwrapper;
+        std::span<const PhaseComponent> components;
+        ImageView<const float> phase_rad;  ///< that was solved
+        /// What was taken off it before, with all turns; empty: nothing.
+        ImageView<const float> reference_rad;
+        /// The image before with its orders, NaN = none; and its components.
+        ImageView<const float> before_rad;
+        ImageView<const std::uint16_t> component_before;
+        /// Of heights: 1 where more phase is nearer, -1 where less is, 0 where that is not known.
+        double front = 0.0;
+    };
+    /// Replaces the orders of the image before.
+    void choose(const Input& input) noexcept;
+    void forget() noexcept;
+
+    /// By component - 1; valid until the next call of choose() or forget().
+    [[nodiscard]] std::span<const std::int32_t> orders() const noexcept { return orders_; }
+    [[nodiscard]] bool ambiguous(std::size_t index) const noexcept {
+        return ambiguous_[index] != 0;
+    }
+    /// How far and on how many places pixels stand out from 0, turns; negative: behind it.
+    [[nodiscard]] double standing_out() const noexcept { return standing_out_; }
+
+ private:
+    /// Votes for orders, kept clean between uses.
+    class Votes {
+     public:
+        void create(int reach) {
+            reach_ = reach;
+            counts_.assign(2 * static_cast<std::size_t>(reach) + 2, 0);
+        }
+        void add(int order, int count = 1) noexcept;
+        void clear() noexcept;
+        [[nodiscard]] int of(int order) const noexcept;
+        [[nodiscard]] int low() const noexcept { return low_; }
+        [[nodiscard]] int high() const noexcept { return high_; }
+        [[nodiscard]] int total() const noexcept { return total_; }
+        /// Of the most votes, the least such; 0 where there are none.
+        [[nodiscard]] int best() const noexcept;
+
+     private:
+        std::vector<std::int32_t> counts_;
+        int reach_ = 0;
+        int low_ = 0;  ///< low_ > high_: none
+        int high_ = -1;
+        int total_ = 0;
+    };
+    /// Two components on either side of a shadow.
+    struct Bridge {
+        std::uint16_t from = 0;
+        std::uint16_t to = 0;
+        std::int32_t orders = 0;  ///< of `to` less that of `from`
+        bool fits = false;        ///< the fringe goes on
+    };
+    struct Sample {
+        int x = 0;
+        int y = 0;
+        float value = 0.0F;
+    };
+
+    void find_bridges(const Input& input) noexcept;
+    void bridge_line(const Input& input, int line) noexcept;
+    [[nodiscard]] float value_at(const Input& input, int x, int y,
+                                 std::uint16_t& id) const noexcept;
+    void sample(const Input& input, const PhaseComponent& component) noexcept;
+    void vote(const Input& input, const Sample& sample) noexcept;
+    void vote_bridges(const Input& input, std::uint16_t id) noexcept;
+    void decide(std::size_t index) noexcept;
+
+    Size size_;
+    bool along_x_ = true;
+    bool metric_ = false;
+    Image<float> low_turns_;  ///< of the working volume, on the grid
+    Image<float> high_turns_;
+    bool far_is_low_ = true;
+    std::vector<std::int32_t> orders_;
+    std::vector<std::uint8_t> ambiguous_, ambiguous_before_;
+    std::vector<Sample> samples_;
+    std::vector<Bridge> bridges_;
+    Votes home_, possible_, before_, sure_before_, bridged_, sure_bridged_;
+    int bridge_misses_ = 0;
+    double standing_out_ = 0.0;
+};
+
+}  // namespace xtrack

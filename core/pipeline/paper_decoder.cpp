@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <xtrack/paper_decoder.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "core/base/setting_up.hpp"
+#include "core/pipeline/paper_decoder_impl.hpp"
+
+namespace xtrack {
+namespace {
+
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+
+Error bad(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
+
+SpatialUnwrapSettings spatial_of(const PaperSettings& settings) {
+    return {settings.step_limit_rad, settings.min_support, settings.min_component_px};
+}
+
+// A camera that nobody knows: its image is as wide as it is far.
+Pinhole nominal_camera(Size image) {
+    Pinhole camera;
+    camera.size = image;
+    camera.matrix(0, 0) = camera.matrix(1, 1) = image.width;
+    camera.matrix(0, 2) = 0.5 * (image.width - 1);
+    camera.matrix(1, 2) = 0.5 * (image.height - 1);
+    return camera;
+}
+
+}  // namespace
+
+Result<void> validate(const PaperSettings& settings) {
+    if (!(settings.min_modulation >= 0.0 && settings.min_modulation <= 127.0)) {
+        return bad("paper settings: min_modulation is " + std::to_string(settings.min_modulation) +
+                   "; give 0 to 127 grey levels");
+    }
+    if (auto valid = validate(spatial_of(settings)); !valid) {
+        return bad("paper settings: " + valid.error().message);
+    }
+    return {};
+}
+
+PaperDecoder::Impl::Impl(DecodePlan decode_plan, Size image, const PaperSettings& paper_settings,
+                         SpatialUnwrapper made, std::optional<Triangulation> rig_geometry,
+                         const Pinhole& camera)
+    : settings(paper_settings),
+      plan(std::move(decode_plan)),
+      period(&plan.sines.back()),
+      used(static_cast<std::size_t>(plan.pattern_count), 0),
+      size(image),
+      window(plan.pattern_count),
+      shown(plan.pattern_count),
+      unwrapper(std::move(made)),
+      geometry(std::move(rig_geometry)),
+      rays(camera),
+      orders(image, plan.axis, geometry ? &*geometry : nullptr, period->period_px,
+             plan.coded_length_px),
+      unwrapped(image.width, image.height, kNone),
+      unwrapped_before(image.width, image.height, kNone),
+      component(image.width, image.height, 0),
+      component_before(image.width, image.height, 0) {
+    for (const int pattern : period->patterns) {
+        used[static_cast<std::size_t>(pattern)] = 1;
+    }
+    components.reserve(std::min<std::size_t>(
+        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height),
+        kMaxPhaseComponents));
+    phase_map.period_px = period->period_px;
+    phase_map.phase_rad = Image<float>(image.width, image.height, kNone);
+    phase_map.modulation = Image<float>(image.width, image.height, 0.0F);
+    if (!geometry) {
+        difference.resize(image.width, image.height);
+    }
+    depth.metric = geometry.has_value();
+    depth.depth = Image<std::uint16_t>(image.width, image.height, 0);
+    depth.quality = Image<std::uint8_t>(image.width, image.height, 0);
+    points = Image<float>(3 * image.width, image.height, kNone);
+    row_coordinate.resize(image.width, 1);
+    row_rays.resize(2 * image.width, 1);
+    row_grey.resize(image.width, static_cast<int>(period->patterns.size()));
+}
+
+Result<PaperDecoder> PaperDecoder::create(const PatternSequence& patterns, Size image,
+                                          const PaperSettings& settings, const Rig* rig) {
+    if (auto valid = validate(settings); !valid) {
+        return valid.error();
+    }
+    if (!is_image_size(image)) {
+        return bad("images of " + std::to_string(image.width) + "x" + std::to_string(image.height) +
+                   " pixels; give 1 to " + std::to_string(kMaxImageSide_px) +
+                   " a side, and 64 million in all");
+    }
+    DecodeSettings plain;
+    plain.taps = PhaseTaps::least_squares;
+    auto plan = DecodePlan::create(patterns, plain);
+    if (!plan) {
+        return plan.error();
+    }
+    if (plan->sines.empty()) {
+        return Error{ErrorCode::unsupported,
+                     "pattern sequence: it has no sines, which spatial unwrapping goes by; use "
+                     "three or more phases of one period"};
+    }
+    const bool metric = rig != nullptr && rig->projector.has_value();
+    if (metric && rig->projector->size != patterns.projector_size) {
+        return bad("projector_size of the rig and of the pattern sequence differ");
+    }
+    if (rig != nullptr && rig->camera.size != image) {
+        return bad("camera_size of the rig is not that of the images");
+    }
+    if (rig != nullptr) {
+        if (auto valid = validate(*rig); !valid) {
+            return bad("rig: " + valid.error().message);
+        }
+    }
+    return base::setting_up("PaperDecoder::create", [&]() -> Result<PaperDecoder> {
+        std::optional<Triangulation> geometry;
+        if (metric) {
+            auto made = Triangulation::create(*rig, patterns.axis, image);
+            if (!made) {
+                return made.error();
+            }
+            geometry.emplace(*std::move(made));
+        }
+        auto unwrapper = SpatialUnwrapper::create(image, spatial_of(settings));
+        if (!unwrapper) {
+            return unwrapper.error();
+        }
+        return PaperDecoder(std::make_unique<Impl>(
+            *std::move(plan), image, settings, *std::move(unwrapper), std::move(geometry),
+            rig != nullptr ? rig->camera : nominal_camera(image)));
+    });
+}
+
+DecodeStatus PaperDecoder::Impl::push(const FramePtr& frame) noexcept {
+    const auto reject = [](RejectReason reason) {
+        return DecodeStatus{DecodeState::rejected, reason};
+    };
+    if (settings.mode == CaptureMode::hold) {
+        return reject(RejectReason::on_hold);
+    }
+    if (!frame || frame->status != FrameStatus::ok) {
+        return reject(RejectReason::damaged);
+    }
+    if (frame->size() != size || frame->pixels.width() != size.width * frame->channels()) {
+        return reject(RejectReason::wrong_size);
+    }
+    if (frame->pattern == kUnknownPattern) {
+        return reject(RejectReason::unknown_pattern);
+    }
+    if (frame->pattern < 0 || frame->pattern >= plan.pattern_count) {
+        return reject(RejectReason::pattern_out_of_range);
+    }
+    if (last_stamp && frame->stamp < *last_stamp) {
+        return reject(RejectReason::time_backwards);
+    }
+    last_stamp = frame->stamp;
+    constexpr DecodeStatus kMore{DecodeState::need_more, RejectReason::none};
+    if (used[static_cast<std::size_t>(frame->pattern)] == 0) {
+        return kMore;
+    }
+    window.push(frame);
+    const bool complete = std::all_of(period->patterns.begin(), period->patterns.end(),
+                                      [&](int pattern) { return window.has(pattern); });
+    if (!complete) {
+        return kMore;
+    }
+    shown = window;
+    if (settings.mode == CaptureMode::burst) {
+        window.clear();
+    }
+    decode();
+    return {DecodeState::depth_ready, RejectReason::none};
+}
+
+PaperDecoder::PaperDecoder(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
+PaperDecoder::PaperDecoder(PaperDecoder&&) noexcept = default;
+PaperDecoder& PaperDecoder::operator=(PaperDecoder&&) noexcept = default;
+PaperDecoder::~PaperDecoder() = default;
+
+DecodeStatus PaperDecoder::push(const FramePtr& frame) noexcept { return impl_->push(frame); }
+
+DecodeStatus PaperDecoder::decode_again() noexcept {
+    if (!impl_->decoded) {
+        return {DecodeState::need_more, RejectReason::none};
+    }
+    impl_->decode();
+    return {DecodeState::depth_ready, RejectReason::none};
+}
+
+Result<void> PaperDecoder::set_settings(const PaperSettings& settings) {
+    if (auto valid = validate(settings); !valid) {
+        return valid;
+    }
+    if (auto set = impl_->unwrapper.set_settings(spatial_of(settings)); !set) {
+        return set;
+    }
+    if (settings.mode == CaptureMode::burst && impl_->settings.mode != CaptureMode::burst) {
+        impl_->window.clear();  // a decode has used them
+    }
+    impl_->settings = settings;
+    if (settings.mode == CaptureMode::hold) {
+        (void)decode_again();
+    }
+    return {};
+}
+
+Result<void> PaperDecoder::learn_background() {
+    return base::setting_up("PaperDecoder::learn_background",
+                            [&] { return impl_->learn_background(); });
+}
+
+void PaperDecoder::forget_background() noexcept {
+    impl_->background_wrapped = {};
+    impl_->background = {};
+    impl_->orders.forget();
+    impl_->standing_out = 0.0;
+}
+
+void PaperDecoder::reset() noexcept {
+    impl_->window.clear();
+    impl_->shown.clear();
+    impl_->last_stamp.reset();
+    impl_->decoded = false;
+    impl_->orders.forget();
+}
+
+int PaperDecoder::frames_needed() const noexcept {
+    return static_cast<int>(impl_->period->patterns.size());
+}
+
+const PaperSettings& PaperDecoder::settings() const noexcept { return impl_->settings; }
+const DepthFrame& PaperDecoder::depth() const noexcept { return impl_->depth; }
+ImageView<const float> PaperDecoder::points_mm() const noexcept {
+    return impl_->settings.points ? std::as_const(impl_->points).view() : ImageView<const float>{};
+}
+const PhaseMap& PaperDecoder::phase() const noexcept { return impl_->phase_map; }
+const Image<float>& PaperDecoder::unwrapped_rad() const noexcept { return impl_->unwrapped; }
+const Image<std::uint16_t>& PaperDecoder::component() const noexcept { return impl_->component; }
+std::span<const PaperComponent> PaperDecoder::components() const noexcept {
+    return impl_->components;
+}
+
+}  // namespace xtrack

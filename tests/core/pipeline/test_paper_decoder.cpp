@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <xtrack/paper_decoder.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/core/pipeline/step_scene.hpp"
+
+namespace xtrack {
+namespace {
+
+using testing::HasSubstr;
+
+const PatternSequence& fringes() {
+    static const PatternSequence patterns = three_step_sequence(Axis::x, {1280, 768}, 32.0);
+    return patterns;
+}
+
+PaperDecoder make(const PaperSettings& settings = {}, const Rig* rig = nullptr,
+                  const PatternSequence& patterns = fringes()) {
+    auto decoder = PaperDecoder::create(patterns, test::StepScene::kCamera, settings, rig);
+    EXPECT_TRUE(decoder) << decoder.error().message;
+    return *std::move(decoder);
+}
+
+/// Images number * 3 and the two after it. @return what push() said of the last
+DecodeState show(PaperDecoder& decoder, const test::StepScene& scene, int number,
+                 const PatternSequence& patterns = fringes()) {
+    DecodeState state = DecodeState::need_more;
+    const int count = static_cast<int>(patterns.patterns.size());
+    for (int n = 0; n < count; ++n) {
+        state = decoder.push(scene.frame(patterns, n, count * number + n)).state;
+    }
+    return state;
+}
+
+int with_depth(const PaperDecoder& decoder) {
+    int count = 0;
+    const Image<std::uint16_t>& depth = decoder.depth().depth;
+    for (int v = 0; v < depth.height(); ++v) {
+        count += static_cast<int>(std::count_if(depth.row(v), depth.row(v) + depth.width(),
+                                                [](std::uint16_t d) { return d != 0; }));
+    }
+    return count;
+}
+
+double depth_at(const PaperDecoder& decoder, int u, int v) {
+    return decoder.depth().depth.at(u, v) * decoder.depth().depth_unit_mm;
+}
+
+// Where the plate of the scenes below is, and a place on the wall beside it.
+constexpr int kPlateU = 165, kPlateV = 120, kWallU = 60, kWallV = 120;
+
+/// Of a wall 900 mm and a plate `plate_mm` away, projector px.
+double disparity_px(double plate_mm) { return 1000.0 * 150.0 * (1.0 / plate_mm - 1.0 / 900.0); }
+
+TEST(PaperDecoder, SlidesOverTheLastThreeImages) {
+    auto decoder = make();
+    const test::StepScene scene;
+    std::vector<DecodeState> states;
+    std::vector<std::uint64_t> centres;
+    for (int n = 0; n < 5; ++n) {
+        states.push_back(decoder.push(scene.frame(fringes(), n % 3, n)).state);
+        centres.push_back(decoder.depth().sequence);
+    }
+    EXPECT_THAT(states, testing::ElementsAre(DecodeState::need_more, DecodeState::need_more,
+                                             DecodeState::depth_ready, DecodeState::depth_ready,
+                                             DecodeState::depth_ready));
+    EXPECT_THAT(centres, testing::ElementsAre(0, 0, 1, 2, 3));
+    EXPECT_EQ(decoder.depth().span, Stamp::from_us(16667 * 2) - Stamp{});
+}
+
+TEST(PaperDecoder, ABurstUsesEveryImageOnce) {
+    PaperSettings settings;
+    settings.mode = CaptureMode::burst;
+    auto decoder = make(settings);
+    const test::StepScene scene;
+    std::vector<std::uint64_t> centres;
+    for (int n = 0; n < 9; ++n) {
+        if (decoder.push(scene.frame(fringes(), n % 3, n)).state == DecodeState::depth_ready) {
+            centres.push_back(decoder.depth().sequence);
+        }
+    }
+    EXPECT_THAT(centres, testing::ElementsAre(1, 4, 7));
+    // An image that is lost leaves its set open until its pattern comes again.
+    EXPECT_EQ(decoder.push(scene.frame(fringes(), 0, 9)).state, DecodeState::need_more);
+    EXPECT_EQ(decoder.push(scene.frame(fringes(), 2, 11)).state, DecodeState::need_more);
+    EXPECT_EQ(decoder.push(scene.frame(fringes(), 0, 12)).state, DecodeState::need_more);
+    EXPECT_EQ(decoder.push(scene.frame(fringes(), 1, 13)).state, DecodeState::depth_ready);
+}
+
+TEST(PaperDecoder, OnHoldAChangedSettingShowsInTheSameImages) {
+    auto decoder = make();
+    test::StepScene scene;
+    scene.contrast_grey = 60.0;  // an amplitude of 30
+    ASSERT_EQ(show(decoder, scene, 0), DecodeState::depth_ready);
+    const int before = with_depth(decoder);
+    PaperSettings settings = decoder.settings();
+    settings.mode = CaptureMode::hold;
+    ASSERT_TRUE(decoder.set_settings(settings));
+    EXPECT_EQ(with_depth(decoder), before);
+    const std::uint64_t sequence = decoder.depth().sequence;
+
+    const DecodeStatus status = decoder.push(scene.frame(fringes(), 0, 3));
+    EXPECT_EQ(status.state, DecodeState::rejected);
+    EXPECT_EQ(status.reason, RejectReason::on_hold);
+    EXPECT_THAT(describe(status.reason), HasSubstr("on hold"));
+
+    settings.min_modulation = 30.0;  // about half of the pixels reach it
+    ASSERT_TRUE(decoder.set_settings(settings));
+    const int masked = with_depth(decoder);
+    EXPECT_LT(masked, before * 3 / 4);
+    EXPECT_GT(masked, 0);
+    settings.min_modulation = 6.0;
+    ASSERT_TRUE(decoder.set_settings(settings));
+    EXPECT_EQ(with_depth(decoder), before);
+    EXPECT_EQ(decoder.decode_again().state, DecodeState::depth_ready);
+    EXPECT_EQ(with_depth(decoder), before);
+    EXPECT_EQ(decoder.depth().sequence, sequence);
+
+    settings.min_component_px = 1 << 20;  // more than the image has
+    ASSERT_TRUE(decoder.set_settings(settings));
+    EXPECT_EQ(with_depth(decoder), 0);
+}
+
+TEST(PaperDecoder, SettingsChangeWhileItRuns) {
+    auto decoder = make();
+    test::StepScene scene;
+    scene.contrast_grey = 60.0;
+    ASSERT_EQ(show(decoder, scene, 0), DecodeState::depth_ready);
+    const int before = with_depth(decoder);
+    PaperSettings settings;
+    settings.min_modulation = 40.0;
+    ASSERT_TRUE(decoder.set_settings(settings));
+    EXPECT_EQ(with_depth(decoder), before) << "not before the next decode";
+    ASSERT_EQ(show(decoder, scene, 1), DecodeState::depth_ready);
+    EXPECT_EQ(with_depth(decoder), 0);
+
+    settings.min_modulation = 128.0;
+    const auto refused = decoder.set_settings(settings);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::invalid_argument);
+    EXPECT_THAT(refused.error().message, HasSubstr("min_modulation"));
+    EXPECT_EQ(decoder.settings().min_modulation, 40.0);
+}
+
+TEST(PaperDecoder, NothingToHoldIsNoDecode) {
+    PaperSettings settings;
+    settings.mode = CaptureMode::hold;
+    auto decoder = make(settings);
+    EXPECT_EQ(decoder.decode_again().state, DecodeState::need_more);
+    ASSERT_FALSE(decoder.learn_background());
+}
+
+TEST(PaperDecoder, WithoutARigHeightsAreRelative) {
+    auto decoder = make();
+    test::StepScene empty;
+    empty.plate_mm = 0.0;
+    ASSERT_EQ(show(decoder, empty, 0), DecodeState::depth_ready);
+    ASSERT_TRUE(decoder.learn_background());
+    EXPECT_FALSE(decoder.depth().metric);
+    EXPECT_NEAR(depth_at(decoder, kWallU, kWallV), PaperDecoder::kBackground_mm, 2.0);
+
+    // The plate is four whole fringes and more before the wall, and joins it nowhere: the shadow
+    // beside it says so.
+    for (const double plate_mm : {600.0, 700.0, 800.0}) {
+        test::StepScene scene;
+        scene.plate_mm = plate_mm;
+        decoder.reset();
+        ASSERT_EQ(show(decoder, scene, 1), DecodeState::depth_ready);
+        EXPECT_NEAR(depth_at(decoder, kWallU, kWallV), PaperDecoder::kBackground_mm, 2.0);
+        EXPECT_NEAR(PaperDecoder::kBackground_mm - depth_at(decoder, kPlateU, kPlateV),
+                    PaperDecoder::kMmPerProjectorPx * disparity_px(plate_mm), 3.0)
+            << plate_mm;
+    }
+}
+
+TEST(PaperDecoder, APlaneStandsInForABackgroundThatWasNotLearnt) {
+    auto decoder = make();
+    const test::StepScene scene;  // with the plate from the start
+    ASSERT_EQ(show(decoder, scene, 0), DecodeState::depth_ready);
+    EXPECT_NEAR(depth_at(decoder, kWallU, kWallV), PaperDecoder::kBackground_mm, 2.0);
+    EXPECT_NEAR(PaperDecoder::kBackground_mm - depth_at(decoder, kPlateU, kPlateV),
+                PaperDecoder::kMmPerProjectorPx * disparity_px(600.0), 3.0);
+}
+
+TEST(PaperDecoder, APlateKeepsItsOrderWhileItComesNearer) {
+    auto decoder = make();
+    test::StepScene scene;
+    scene.plate_mm = 0.0;
+    ASSERT_EQ(show(decoder, scene, 0), DecodeState::depth_ready);
+    ASSERT_TRUE(decoder.learn_background());
+    decoder.reset();
+    // Nothing but the rim is lit beside the plate, so that no shadow tells where it is.
+    int number = 3;
+    for (scene.plate_mm = 860.0; scene.plate_mm >= 600.0; scene.plate_mm -= 2.0, ++number) {
+        auto plate = scene.frame(fringes(), number % 3, number);
+        for (int v = 0; v < 240; ++v) {
+            for (int u = 24; u < 320; ++u) {
+                plate->pixels.at(u, v) = scene.depth_mm(u, v) > scene.plate_mm
+                                             ? std::uint8_t{0}
+                                             : plate->pixels.at(u, v);
+            }
+        }
+        const DecodeState state = decoder.push(plate).state;
+        if (state == DecodeState::depth_ready) {
+            // Three images of three places: the depth is that of the middle one, and rippled.
+            EXPECT_NEAR(PaperDecoder::kBackground_mm - depth_at(decoder, kPlateU, kPlateV),
+                        PaperDecoder::kMmPerProjectorPx * disparity_px(scene.plate_mm + 2.0), 4.0)
+                << scene.plate_mm;
+        }
+    }
+    EXPECT_GT(number, 120);
+}
+
+TEST(PaperDecoder, WithARigDepthIsMetric) {
+    const Rig rig = test::StepScene::rig();
+    auto decoder = make({}, &rig);
+    const test::StepScene scene;
+    ASSERT_EQ(show(decoder, scene, 0), DecodeState::depth_ready);
+    EXPECT_TRUE(decoder.depth().metric);
+    EXPECT_NEAR(depth_at(decoder, kWallU, kWallV), 900.0, 3.0);
+    EXPECT_NEAR(depth_at(decoder, kPlateU, kPlateV), 600.0, 3.0);
+    // The volume has room for the wall a fringe nearer, so that all of it is a guess.
+    ASSERT_GE(decoder.components().size(), 2U);
+    const auto plate = decoder.component().at(kPlateU, kPlateV);
+    ASSERT_NE(plate, decoder.component().at(kWallU, kWallV));
+    EXPECT_TRUE(decoder.components()[0].ambiguous);
+    EXPECT_TRUE(decoder.components()[plate - 1U].ambiguous);
+}
+
+TEST(PaperDecoder, AVolumeOfOneFringeLeavesNothingOpen) {
+    Rig rig = test::StepScene::rig();
+    rig.working_volume = WorkingVolume{580.0, 640.0};  // 24 of 32 px
+    auto decoder = make({}, &rig);
+    test::StepScene scene;
+    scene.plate_left_mm = scene.plate_top_mm = -200.0;
+    scene.plate_right_mm = scene.plate_bottom_mm = 200.0;
+    ASSERT_EQ(show(decoder, scene, 0), DecodeState::depth_ready);
+    EXPECT_NEAR(depth_at(decoder, kPlateU, kPlateV), 600.0, 3.0);
+    EXPECT_FALSE(decoder.components()[0].ambiguous);
+    EXPECT_EQ(depth_at(decoder, 10, 10), 0.0) << "the wall is outside the volume";
+}
+
+TEST(PaperDecoder, WhatNothingOrdersIsMarked) {
+    const Rig rig = test::StepScene::rig();
+    auto decoder = make({}, &rig);
+    test::StepScene scene;
+    scene.wall_mm = 5000.0;  // its light is lost in the noise
+    scene.plate_left_mm = scene.plate_top_mm = -40.0;
+    scene.plate_right_mm = scene.plate_bottom_mm = 40.0;
+    auto lit = [&](int pattern, int number) {
+        auto frame = scene.frame(fringes(), pattern, number);
+        for (int v = 0; v < 240; ++v) {
+            for (int u = 0; u < 320; ++u) {
+                frame->pixels.at(u, v) =
+                    scene.depth_mm(u, v) > 1000.0 ? std::uint8_t{10} : frame->pixels.at(u, v);
+            }
+        }
+        return frame;
+    };
+    for (int n = 0; n < 3; ++n) {
+        decoder.push(lit(n, n));
+    }
+    ASSERT_EQ(decoder.components().size(), 1U);
+    EXPECT_TRUE(decoder.components()[0].ambiguous);
+    const double z_mm = depth_at(decoder, kPlateU, kPlateV);
+    EXPECT_GE(z_mm, 400.0);
+    EXPECT_LE(z_mm, 1000.0);
+}
+
+TEST(PaperDecoder, PointsAreTheDepthAlongTheRays) {
+    const Rig rig = test::StepScene::rig();
+    auto decoder = make({}, &rig);
+    const test::StepScene scene;
+    ASSERT_EQ(show(decoder, scene, 0), DecodeState::depth_ready);
+    const auto points = decoder.points_mm();
+    ASSERT_EQ(points.size(), (Size{3 * 320, 240}));
+    int checked = 0;
+    for (int v = 0; v < 240; v += 7) {
+        for (int u = 0; u < 320; u += 3) {
+            const float* point = points.row(v) + 3 * u;
+            const double z = depth_at(decoder, u, v);
+            if (z == 0.0) {
+                EXPECT_TRUE(std::isnan(point[2]));
+                continue;
+            }
+            EXPECT_NEAR(point[2], z, 1e-3);
+            EXPECT_NEAR(point[0], (u - 159.5) / 300.0 * z, 1e-3);
+            EXPECT_NEAR(point[1], (v - 119.5) / 300.0 * z, 1e-3);
+            ++checked;
+        }
+    }
+    EXPECT_GT(checked, 2000);
+    PaperSettings settings;
+    settings.points = false;
+    ASSERT_TRUE(decoder.set_settings(settings));
+    EXPECT_TRUE(decoder.points_mm().empty());
+}
+
+TEST(PaperDecoder, TakesAnyPeriodAndPassesOverOtherPatterns) {
+    PatternSequence dual = dual_sequence(Axis::x, {1280, 768}, 512.0, 64.0);
+    auto decoder = make({}, nullptr, dual);
+    EXPECT_EQ(decoder.frames_needed(), 3);
+    const test::StepScene scene;
+    EXPECT_EQ(show(decoder, scene, 0, dual), DecodeState::depth_ready);
+    EXPECT_EQ(decoder.phase().period_px, 64.0);
+    EXPECT_EQ(decoder.push(scene.frame(dual, 0, 6)).state, DecodeState::need_more);
+
+    const PatternSequence four = n_step_sequence(Axis::x, {1280, 768}, 32.0, 4);
+    auto of_four = make({}, nullptr, four);
+    EXPECT_EQ(show(of_four, scene, 0, four), DecodeState::depth_ready);
+    EXPECT_NEAR(PaperDecoder::kBackground_mm - depth_at(of_four, kPlateU, kPlateV),
+                PaperDecoder::kMmPerProjectorPx * disparity_px(600.0), 3.0);
+}
+
+TEST(PaperDecoder, RowsThatSawTwoPatternsAreOfTheImageBefore) {
+    auto decoder = make();
+    const test::StepScene scene;
+    for (int n = 0; n < 3; ++n) {
+        auto frame = scene.frame(fringes(), n, n);
+        frame->clean_row_begin = n == 1 ? 40 : 0;
+        decoder.push(frame);
+    }
+    EXPECT_EQ(depth_at(decoder, kWallU, 20), 0.0);
+    EXPECT_NEAR(depth_at(decoder, kWallU, kWallV), PaperDecoder::kBackground_mm, 2.0);
+}
+
+TEST(PaperDecoder, SaysWhatItCannotDo) {
+    const auto error_of = [](const PatternSequence& patterns, const Rig* rig = nullptr) {
+        const auto made = PaperDecoder::create(patterns, test::StepScene::kCamera, {}, rig);
+        return made ? std::string() : made.error().message;
+    };
+    PatternSequence gray = gray_code_sequence(Axis::x, {1280, 768}, 32.0);
+    std::erase_if(gray.patterns, [](const Pattern& p) { return p.kind == PatternKind::sine; });
+    EXPECT_THAT(error_of(gray), HasSubstr("no sines"));
+    EXPECT_THAT(error_of(rgb_sequence(Axis::x, {1280, 768}, {96.0})), HasSubstr("rgb_sine"));
+    Rig rig = test::StepScene::rig();
+    rig.projector->size = {800, 600};
+    EXPECT_THAT(error_of(fringes(), &rig), HasSubstr("projector_size"));
+    rig = test::StepScene::rig();
+    rig.camera.size = {640, 480};
+    EXPECT_THAT(error_of(fringes(), &rig), HasSubstr("camera_size"));
+}
+
+}  // namespace
+}  // namespace xtrack
