@@ -17,6 +17,8 @@ constexpr std::array<float, 3> kSkin{1.4F, 0.95F, 0.75F};
 constexpr float kSkinContrast = 0.7F;
 constexpr std::size_t kGiven = 2;  // surfaces that are always there: grey and skin
 
+// What is at another place in the coarse image must agree there by so much better.
+constexpr float kMovesShare = 0.8F;
 constexpr float kLeastLight = 30.0F;  // grey levels, sum of the colours
 
 // What a surface is believed to be counts as so many pixels.
@@ -76,6 +78,7 @@ ColourPalette::ColourPalette(Size image, const ColourModel& model, const ColourP
     for (Image<float>& plane : planes_) {
         plane.resize(samples_.width, samples_.height);
     }
+    moved_costs_.resize(static_cast<std::size_t>(samples_.width));
     for (Image<float>& cost : costs_) {
         cost.resize(samples_.width, samples_.height);
     }
@@ -108,7 +111,8 @@ void ColourPalette::clear() noexcept {
     frames_ = 0;
 }
 
-void ColourPalette::begin() noexcept {
+void ColourPalette::begin(float moved_px) noexcept {
+    moved_px_ = moved_px;
     for (Image<float>& plane : planes_) {
         plane.fill(0.0F);
     }
@@ -120,6 +124,11 @@ ColourSamplesOut ColourPalette::row(int y) noexcept {
     return {{planes_[0].row(sy), planes_[1].row(sy), planes_[2].row(sy)},
             {planes_[3].row(sy), planes_[4].row(sy), planes_[5].row(sy)},
             planes_[6].row(sy)};
+}
+
+std::array<float*, 3> ColourPalette::moved_row(int y) noexcept {
+    const int sy = y / kSampleStepPx;
+    return {planes_[7].row(sy), planes_[8].row(sy), planes_[9].row(sy)};
 }
 
 ColourSamples ColourPalette::row_samples(int row) const noexcept {
@@ -136,14 +145,16 @@ ColourModel::Light ColourPalette::coarse_at(int sx, int sy) const noexcept {
     return {planes_[3].at(sx, sy), planes_[4].at(sx, sy), planes_[5].at(sx, sy)};
 }
 
-void ColourPalette::measure(const Entry& entry, const ColourSamples& samples, int count,
-                            float* cost) const noexcept {
+void ColourPalette::measure(const Entry& entry, const ColourSamples& samples, float moved_px,
+                            int count, float* cost) const noexcept {
     ColourCost row;
     row.inverse = entry.inverse;
     row.contrast = entry.surface.contrast;
     row.fine = fine_;
     row.has_coarse = coarse_.has_value();
     row.coarse = coarse_.value_or(ColourPeriod{});
+    row.coarse.phase_rad += static_cast<double>(kTurn) * static_cast<double>(moved_px) /
+                            std::max(row.coarse.period_px, 1.0);
     row.samples = samples;
     row.count = count;
     row.cost = cost;
@@ -153,19 +164,33 @@ void ColourPalette::measure(const Entry& entry, const ColourSamples& samples, in
 void ColourPalette::add_row(int y) noexcept {
     const int sy = y / kSampleStepPx;
     const ColourSamples samples = row_samples(sy);
-    for (std::size_t k = 0; k < used_; ++k) {
-        measure(entries_[k], samples, samples_.width, costs_[k].row(sy));
-    }
     Evidence* cells = evidence_.data() + static_cast<std::size_t>(y / kCellPx) *
                                              static_cast<std::size_t>(cells_.width());
+    ColourSamples moved = samples;
+    for (std::size_t c = 0; c < 3; ++c) {
+        moved.coarse[c] = planes_[7 + c].row(sy);
+    }
+    const bool moves = coarse_ && std::any_of(moved.coarse[0], moved.coarse[0] + samples_.width,
+                                              [](float light) { return light > 0.0F; });
+    const auto lit = [&](int i) {
+        return samples.fine[0][i] + samples.fine[1][i] + samples.fine[2][i] >= kLeastLight;
+    };
     for (int i = 0; i < samples_.width; ++i) {
-        if (samples.fine[0][i] + samples.fine[1][i] + samples.fine[2][i] < kLeastLight) {
-            continue;
+        cells[i * kSampleStepPx / kCellPx].pixels += lit(i) ? 1.0F : 0.0F;
+    }
+    for (std::size_t k = 0; k < used_; ++k) {
+        float* costs = costs_[k].row(sy);
+        measure(entries_[k], samples, 0.0F, samples_.width, costs);
+        if (moves) {
+            measure(entries_[k], moved, moved_px_, samples_.width, moved_costs_.data());
         }
-        Evidence& cell = cells[i * kSampleStepPx / kCellPx];
-        cell.pixels += 1.0F;
-        for (std::size_t k = 0; k < used_; ++k) {
-            cell.cost[k] += costs_[k].at(i, sy);
+        for (int i = 0; i < samples_.width; ++i) {
+            if (lit(i)) {
+                Evidence& cell = cells[i * kSampleStepPx / kCellPx];
+                cell.cost[k] += costs[i];
+                cell.moved[k] +=
+                    moves ? moved_costs_[static_cast<std::size_t>(i)] : kMostColourCost;
+            }
         }
     }
 }
@@ -178,6 +203,7 @@ void ColourPalette::choose() noexcept {
         to.pixels += weight * of.pixels;
         for (std::size_t k = 0; k < kMostSurfaces; ++k) {
             to.cost[k] += weight * of.cost[k];
+            to.moved[k] += weight * of.moved[k];
         }
     };
     for (Entry& entry : entries_) {
@@ -194,15 +220,19 @@ void ColourPalette::choose() noexcept {
             }
             smoothed_[at(x, y)] = sum;
             std::size_t best = 0;
+            std::size_t moved = 0;
             for (std::size_t k = 1; k < used_; ++k) {
                 best = sum.cost[k] < sum.cost[best] ? k : best;
+                moved = sum.moved[k] < sum.moved[moved] ? k : moved;
             }
-            cells_.at(x, y) = static_cast<std::uint8_t>(best);
+            const bool moves = sum.moved[moved] < kMovesShare * sum.cost[best];
+            best = moves ? moved : best;
+            const auto value = static_cast<std::uint8_t>(best + (moves ? kMoved : 0U));
+            cells_.at(x, y) = value;
             entries_[best].cells += sum.pixels > 0.0F ? 1 : 0;
             constexpr int kFine = kCellPx / kFineStepPx;
             for (int j = 0; j < kFine; ++j) {
-                std::fill_n(surfaces_.row(y * kFine + j) + x * kFine, kFine,
-                            static_cast<std::uint8_t>(best));
+                std::fill_n(surfaces_.row(y * kFine + j) + x * kFine, kFine, value);
             }
         }
     }
@@ -220,22 +250,29 @@ bool ColourPalette::at_border(int cell_x, int cell_y) const noexcept {
     return false;
 }
 
-void ColourPalette::draw_border(int cell_x, int cell_y, const ColourSamples& samples) noexcept {
-    std::array<bool, kMostSurfaces> near{};
+void ColourPalette::draw_border(int cell_x, int cell_y, const ColourSamples& samples,
+                                const std::array<const float*, 3>& moved) noexcept {
+    std::array<bool, 2 * kMostSurfaces> near{};  // at rest, then moved
     for (int j = std::max(0, cell_y - 1); j <= std::min(cells_.height() - 1, cell_y + 1); ++j) {
         for (int i = std::max(0, cell_x - 1); i <= std::min(cells_.width() - 1, cell_x + 1); ++i) {
-            near[cells_.at(i, j)] = true;
+            const std::uint8_t value = cells_.at(i, j);
+            near[surface_of(value) + (is_moved(value) ? kMostSurfaces : 0)] = true;
         }
     }
     constexpr int kFine = kCellPx / kFineStepPx;
     std::array<float, kFine * kFine> least{};
     least.fill(std::numeric_limits<float>::max());
     std::array<float, kFineSamples * kFineSamples> costs{};
-    for (std::size_t k = 0; k < used_; ++k) {
-        if (!near[k]) {
+    ColourSamples moved_samples = samples;
+    moved_samples.coarse = moved;
+    for (std::size_t n = 0; n < near.size(); ++n) {
+        if (!near[n]) {
             continue;
         }
-        measure(entries_[k], samples, static_cast<int>(costs.size()), costs.data());
+        const bool moves = n >= kMostSurfaces;
+        const std::size_t k = n % kMostSurfaces;
+        measure(entries_[k], moves ? moved_samples : samples, moves ? moved_px_ : 0.0F,
+                static_cast<int>(costs.size()), costs.data());
         for (int y = 0; y < kFine; ++y) {
             for (int x = 0; x < kFine; ++x) {
                 float sum = 0.0F;
@@ -248,7 +285,7 @@ void ColourPalette::draw_border(int cell_x, int cell_y, const ColourSamples& sam
                 if (sum < best) {
                     best = sum;
                     surfaces_.at(cell_x * kFine + x, cell_y * kFine + y) =
-                        static_cast<std::uint8_t>(k);
+                        static_cast<std::uint8_t>(k + (moves ? kMoved : 0U));
                 }
             }
         }
@@ -262,9 +299,11 @@ void ColourPalette::refine() noexcept {
     for (int sy = 0; sy < samples_.height; ++sy) {
         for (int sx = 0; sx < samples_.width; ++sx) {
             const ColourModel::Light light = fine_at(sx, sy);
-            const std::size_t surface =
+            const std::uint8_t value =
                 cells_.at(sx * kSampleStepPx / kCellPx, sy * kSampleStepPx / kCellPx);
-            if (light.sum() < kLeastLight || !(costs_[surface].at(sx, sy) < kSureCost)) {
+            const std::size_t surface = surface_of(value);
+            // What moved agrees only about; it can wait until it rests.
+            if (is_moved(value) || light.sum() < kLeastLight || !(costs_[surface].at(sx, sy) < kSureCost)) {
                 continue;
             }
             Entry& entry = entries_[surface];
@@ -320,7 +359,9 @@ void ColourPalette::search() noexcept {
         const auto cy = static_cast<int>(next_search_ / static_cast<std::size_t>(cells_.width()));
         const Evidence& evidence = smoothed_[next_search_];
         constexpr float kExplained = 0.08F;
-        const float least = evidence.cost[cells_.at(cx, cy)];
+        const std::uint8_t value = cells_.at(cx, cy);
+        const float least = is_moved(value) ? evidence.moved[surface_of(value)]
+                                            : evidence.cost[surface_of(value)];
         if (frames_ > 0 && least < kExplained * evidence.pixels) {
             continue;
         }

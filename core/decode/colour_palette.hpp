@@ -23,6 +23,9 @@ namespace xtrack {
 /// ColourSearch explains: many that agree on their gains are one; without a coarse colour period
 /// there is no such search, and grey and skin must do.
 ///
+/// Where something moves the coarse image, which is older, shows it at another place: its light
+/// there is a second chance of a sample to agree with itself.
+///
 /// A frame: begin(), add_row() for every kSampleStep-th row, choose(), then surface_at() and taps()
 /// are of this frame; learn() last.
 /// @thread one at a time; no allocation after create()
@@ -46,11 +49,15 @@ class ColourPalette {
                 (image.height + kSampleStepPx - 1) / kSampleStepPx};
     }
 
-    void begin() noexcept;
+    /// @param moved_px how much larger than now the coordinates of what moves were when the coarse
+    ///        image was taken
+    void begin(float moved_px = 0.0F) noexcept;
     /// Where to put the samples of the pixels x = 0, kSampleStepPx, ... of a row; light of zero
     /// says that there is nothing to learn.
     /// @param y row of the image, a multiple of kSampleStepPx
     [[nodiscard]] ColourSamplesOut row(int y) noexcept;
+    /// The same for the light of the coarse image where it shows what moves; zero: nothing does.
+    [[nodiscard]] std::array<float*, 3> moved_row(int y) noexcept;
     /// Takes what was put into row(y).
     void add_row(int y) noexcept;
     void choose() noexcept;
@@ -59,14 +66,22 @@ class ColourPalette {
     /// Draws the border within a cell, kFineStepPx at a time.
     /// @param samples kFineSamples x kFineSamples of them, kFineStepPx apart, row by row; they
     ///        reach one beyond the cell on each side
-    void draw_border(int cell_x, int cell_y, const ColourSamples& samples) noexcept;
+    /// @param moved light of the coarse image where it shows what moves
+    void draw_border(int cell_x, int cell_y, const ColourSamples& samples,
+                     const std::array<const float*, 3>& moved) noexcept;
     void learn() noexcept;
     /// True once surfaces were found and refined since the last clear().
     [[nodiscard]] bool settled() const noexcept { return frames_ >= kFirstFrames; }
     void clear() noexcept;
 
-    /// By pairs of rows and columns: pixel (x, y) is of surfaces().at(x / kFineStepPx, ...).
+    /// By pairs of rows and columns: pixel (x, y) is of surfaces().at(x / kFineStepPx, ...), which
+    /// surface_of() and is_moved() read.
     [[nodiscard]] const Image<std::uint8_t>& surfaces() const noexcept { return surfaces_; }
+    [[nodiscard]] static std::size_t surface_of(std::uint8_t value) noexcept {
+        return value & (kMoved - 1U);
+    }
+    /// True where the coarse image agrees at another place.
+    [[nodiscard]] static bool is_moved(std::uint8_t value) noexcept { return value >= kMoved; }
     [[nodiscard]] int cells_x() const noexcept { return cells_.width(); }
     [[nodiscard]] int cells_y() const noexcept { return cells_.height(); }
     /// Of a surface; its phase is that of a pattern whose red has the phase 0.
@@ -79,6 +94,7 @@ class ColourPalette {
     }
 
  private:
+    static constexpr std::uint8_t kMoved = 128;
     static constexpr int kFirstFrames = 9;
     static constexpr int kVoteCells = 40;  // along each axis of E
     struct Entry {
@@ -91,10 +107,11 @@ class ColourPalette {
     struct Evidence {
         float pixels = 0.0F;
         std::array<float, kMostSurfaces> cost{};
+        std::array<float, kMostSurfaces> moved{};
     };
 
     void set(std::size_t entry, const ColourSurface& surface) noexcept;
-    void measure(const Entry& entry, const ColourSamples& samples, int count,
+    void measure(const Entry& entry, const ColourSamples& samples, float moved_px, int count,
                  float* cost) const noexcept;
     [[nodiscard]] ColourSamples row_samples(int row) const noexcept;
     [[nodiscard]] ColourModel::Light fine_at(int sx, int sy) const noexcept;
@@ -114,10 +131,12 @@ class ColourPalette {
     std::size_t used_ = 0;
     Size samples_;
     Image<float> first_px_, last_px_;
-    // Of all samples: fine and coarse light, the reference.
-    std::array<Image<float>, 7> planes_;
+    // Of all samples: fine and coarse light, the reference, coarse light of what moves.
+    std::array<Image<float>, 10> planes_;
+    float moved_px_ = 0.0F;
+    std::vector<float> moved_costs_;  // of a row
     std::array<Image<float>, kMostSurfaces> costs_;  // of each surface in each sample
-    Image<std::uint8_t> cells_;
+    Image<std::uint8_t> cells_;  // surface, and kMoved
     Image<std::uint8_t> surfaces_;
     std::vector<Evidence> evidence_;
     std::vector<Evidence> smoothed_;

@@ -66,6 +66,15 @@ DepthDecoder::Impl::ColourRow DepthDecoder::Impl::colour_row(int y) const noexce
     }
     row.fine = fine_frame->pixels.row(y);
     row.coarse = coarse_frame->pixels.row(y);
+    if (coarse != nullptr && moves()) {
+        const Shift shift = motion->to(*coarse_frame);
+        const int at = y + shift.dy;
+        if (at >= 0 && at < size.height && saw(*coarse_frame, at)) {
+            row.moved = coarse_frame->pixels.row(at);
+            row.moved_dx = shift.dx;
+            row.cell_y = std::min(y / MotionEstimator::kCellPx, motion->cells_y() - 1);
+        }
+    }
     if (settings.order == OrderSource::depth_image) {
         row.reference_px = order_px.row(y);
     } else if (plan.sines.size() == 2 && coarse != nullptr && !plan.gray &&
@@ -76,7 +85,8 @@ DepthDecoder::Impl::ColourRow DepthDecoder::Impl::colour_row(int y) const noexce
 }
 
 void DepthDecoder::Impl::sample_colours(const ColourRow& row, int x, std::size_t at,
-                                        const ColourSamplesOut& out) const noexcept {
+                                        const ColourSamplesOut& out,
+                                        const std::array<float*, 3>& moved) const noexcept {
     ColourModel::Light fine = ColourModel::Light::Zero();
     ColourModel::Light coarse = ColourModel::Light::Zero();
     const std::ptrdiff_t pixel = static_cast<std::ptrdiff_t>(3) * x;
@@ -88,16 +98,28 @@ void DepthDecoder::Impl::sample_colours(const ColourRow& row, int x, std::size_t
         out.fine[static_cast<std::size_t>(k)][at] = fine[k];
         out.coarse[static_cast<std::size_t>(k)][at] = coarse[k];
     }
+    ColourModel::Light other = ColourModel::Light::Zero();
+    const int there = x + row.moved_dx;
+    if (row.moved != nullptr && there >= 0 && there < size.width &&
+        motion->disturbed(std::min(x / MotionEstimator::kCellPx, motion->cells_x() - 1),
+                          row.cell_y)) {
+        const std::uint8_t* bgr = row.moved + static_cast<std::ptrdiff_t>(3) * there;
+        other = clipped(bgr) ? other : colours.light(bgr);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+        moved[k][at] = other[static_cast<int>(k)];
+    }
     out.reference_px[at] = row.reference_px == nullptr ? kNone : row.reference_px[x];
 }
 
 void DepthDecoder::Impl::choose_surfaces() noexcept {
-    palette->begin();
+    palette->begin(coarse_drift_px());
     for (int y = 0; y < size.height; y += kStep) {
         const ColourRow row = colour_row(y);
         const ColourSamplesOut out = palette->row(y);
+        const std::array<float*, 3> moved = palette->moved_row(y);
         for (int x = 0; x < size.width; x += kStep) {
-            sample_colours(row, x, static_cast<std::size_t>(x / kStep), out);
+            sample_colours(row, x, static_cast<std::size_t>(x / kStep), out, moved);
         }
         palette->add_row(y);
     }
@@ -108,7 +130,8 @@ void DepthDecoder::Impl::draw_borders() noexcept {
     constexpr int kSide = ColourPalette::kFineSamples;
     constexpr int kFine = ColourPalette::kFineStepPx;
     constexpr std::size_t kCount = static_cast<std::size_t>(kSide) * kSide;
-    std::array<std::array<float, kCount>, 7> planes;
+    std::array<std::array<float, kCount>, 10> planes;
+    const std::array<float*, 3> moved{planes[7].data(), planes[8].data(), planes[9].data()};
     const ColourSamplesOut out{{planes[0].data(), planes[1].data(), planes[2].data()},
                                {planes[3].data(), planes[4].data(), planes[5].data()},
                                planes[6].data()};
@@ -129,11 +152,41 @@ void DepthDecoder::Impl::draw_borders() noexcept {
             for (const ColourRow& row : rows) {
                 for (int i = -1; i < kSide - 1; ++i) {
                     const int x = std::clamp(cx * kCell + i * kFine, 0, size.width - 1);
-                    sample_colours(row, x, at++, out);
+                    sample_colours(row, x, at++, out, moved);
                 }
             }
-            palette->draw_border(cx, cy, samples);
+            palette->draw_border(cx, cy, samples, {moved[0], moved[1], moved[2]});
         }
+    }
+}
+
+bool DepthDecoder::Impl::moves() const noexcept {
+    return settings.motion == MotionHandling::follow && motion && motion->moving();
+}
+
+// How far the coordinates of what moves were from where they are now, when the coarse image came.
+float DepthDecoder::Impl::coarse_drift_px() const noexcept {
+    const SinePlan* coarse = plan.colour_reference();
+    const Frame* frame = coarse == nullptr ? nullptr : window.newest(coarse->patterns.front());
+    return frame == nullptr || !moves() ? 0.0F : static_cast<float>(drift_px_since(*frame));
+}
+
+void DepthDecoder::Impl::decode_moved_colours(int y, const RowOut& out) noexcept {
+    constexpr int kFine = ColourPalette::kFineStepPx;
+    const std::uint8_t* surfaces = palette->surfaces().row(y / kFine);
+    const RowOut moved{moving_phase.row(0), moving_modulation.row(0), moving_coordinate.row(0)};
+    bool decoded = false;
+    for (int x = 0; can_follow && x < size.width; ++x) {
+        if (!ColourPalette::is_moved(surfaces[x / kFine])) {
+            continue;
+        }
+        if (!decoded) {
+            decode_row_chain(following, y, moved);
+            decoded = true;
+        }
+        out.phase[x] = moved.phase[x];
+        out.modulation[x] = moved.modulation[x];
+        out.coordinate[x] = moved.coordinate[x];
     }
 }
 
@@ -157,10 +210,12 @@ void DepthDecoder::Impl::colours_of_row(int y) noexcept {
     const std::uint8_t* surfaces = palette->surfaces().row(row_of_taps);
     for (int begin = 0; begin < size.width;) {
         int end = begin + 1;
-        while (end < size.width && surfaces[end / kFine] == surfaces[begin / kFine]) {
+        const std::size_t surface = ColourPalette::surface_of(surfaces[begin / kFine]);
+        while (end < size.width &&
+               ColourPalette::surface_of(surfaces[end / kFine]) == surface) {
             ++end;
         }
-        const ColourModel::Taps& taps = palette->taps(surfaces[begin / kFine]);
+        const ColourModel::Taps& taps = palette->taps(surface);
         for (std::size_t t = 0; t < taps.size(); ++t) {
             std::fill(row_taps.row(static_cast<int>(t)) + begin,
                       row_taps.row(static_cast<int>(t)) + end, taps[t]);

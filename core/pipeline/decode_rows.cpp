@@ -341,7 +341,7 @@ void DepthDecoder::Impl::noise_gain_row(int y, float* gain) const noexcept {
     const auto frames = static_cast<float>(std::max(still.back().taps.count, 1));
     for (int x = 0; x < size.width; ++x) {
         float power = 0.0F;
-        for (const float tap : palette->taps(surfaces[x / kFine])) {
+        for (const float tap : palette->taps(ColourPalette::surface_of(surfaces[x / kFine]))) {
             power += tap * tap;
         }
         gain[x] = std::sqrt(0.5F * power / frames);
@@ -381,7 +381,9 @@ void DepthDecoder::Impl::decode_rows(int begin, int end) noexcept {
             colours_of_row(y);
         }
         decode_row_chain(still, y, out);
-        if (motion) {
+        if (palette) {
+            decode_moved_colours(y, out);
+        } else if (motion) {
             decode_moving_row(y, out);
         }
         if (keep && !still.empty()) {

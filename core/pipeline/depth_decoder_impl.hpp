@@ -57,6 +57,9 @@ struct DepthDecoder::Impl {
         const std::uint8_t* fine = nullptr;  // bgr; null: not seen cleanly
         const std::uint8_t* coarse = nullptr;
         const float* reference_px = nullptr;  // null: nothing known
+        const std::uint8_t* moved = nullptr;  // of the coarse image, where it shows what moves
+        int moved_dx = 0;
+        int cell_y = 0;  // of the motion's cells
     };
     Result<void> prepare_colours(const Rig& rig);
     void tell_surfaces() noexcept;
@@ -64,7 +67,11 @@ struct DepthDecoder::Impl {
     void draw_borders() noexcept;
     [[nodiscard]] ColourRow colour_row(int y) const noexcept;
     void sample_colours(const ColourRow& row, int x, std::size_t at,
-                        const ColourSamplesOut& out) const noexcept;
+                        const ColourSamplesOut& out,
+                        const std::array<float*, 3>& moved) const noexcept;
+    [[nodiscard]] bool moves() const noexcept;
+    [[nodiscard]] float coarse_drift_px() const noexcept;
+    void decode_moved_colours(int y, const RowOut& out) noexcept;
     void colours_of_row(int y) noexcept;
     void average_row(const Images& images, int y) noexcept;
     void triangulate_row(int y, const RowOut& row) noexcept;

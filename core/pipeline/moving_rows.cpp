@@ -58,7 +58,7 @@ double DepthDecoder::Impl::drift_px_since(const Frame& frame) const noexcept {
 }
 
 void DepthDecoder::Impl::follow_images() noexcept {
-    can_follow = settings.motion == MotionHandling::follow && motion && motion->moving();
+    can_follow = moves();
     drift_rad_per_cycle = 0.0;
     if (!can_follow) {
         return;
@@ -142,9 +142,7 @@ void DepthDecoder::Impl::decode_moving_row(int y, const RowOut& out) noexcept {
             std::copy(moved.modulation + begin, moved.modulation + end, out.modulation + begin);
             std::copy(moved.coordinate + begin, moved.coordinate + end, out.coordinate + begin);
         }
-        if (!plan.colour()) {
-            mask_disagreeing(y, begin, end, follow, out);
-        }
+        mask_disagreeing(y, begin, end, follow, out);
     }
 }
 

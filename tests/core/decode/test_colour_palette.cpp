@@ -75,7 +75,8 @@ class Palette : public testing::Test {
 
     [[nodiscard]] const ColourSurface& at(int x, int y) const {
         constexpr int kStep = ColourPalette::kFineStepPx;
-        return palette_.surface(palette_.surfaces().at(x / kStep, y / kStep));
+        return palette_.surface(
+            ColourPalette::surface_of(palette_.surfaces().at(x / kStep, y / kStep)));
     }
 
     void expect(const ColourPixel& truth, int x, int y) const {
@@ -139,10 +140,12 @@ TEST_F(Palette, DrawsBordersToTwoPixels) {
                 static_cast<std::size_t>(j * kSide + i), out);
         }
     }
+    const std::array<float, static_cast<std::size_t>(kSide) * kSide> still{};
     palette_.draw_border(cx, cy,
                          {{planes[0].data(), planes[1].data(), planes[2].data()},
                           {planes[3].data(), planes[4].data(), planes[5].data()},
-                          planes[6].data()});
+                          planes[6].data()},
+                         {still.data(), still.data(), still.data()});
     expect(kShirt, 97, 122);
     expect(kSkin, 103, 122);
 }
