@@ -103,10 +103,10 @@ void MotionEstimator::shrink(const Frame& frame, Image<std::uint8_t>& cells) con
             unsigned count = 0;
             for (int j = 0; j < kCellPx && cy * kCellPx + j < size_.height; j += 2) {
                 const std::uint8_t* p =
-                    frame.pixels.row(cy * kCellPx + j) + cx * kCellPx * pixel + (grey ? 0 : 1);
+                    frame.pixels.row(cy * kCellPx + j) + cx * kCellPx * pixel;
                 const int columns = std::min(kCellPx, size_.width - cx * kCellPx);
                 for (int i = 0; i < columns; ++i) {
-                    sum += p[i * pixel];
+                    sum += grey ? p[i] : static_cast<unsigned>(motion::mean_of(p + i * pixel));
                 }
                 count += static_cast<unsigned>(columns);
             }

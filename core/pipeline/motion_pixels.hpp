@@ -13,10 +13,16 @@ namespace xtrack::motion {
 // and must not drag the estimate.
 inline constexpr int kCostCap = 40;
 
-// Green stands for grey in colour images: differences are all that matters here.
+// The mean of the colours stands for grey: colour fringes all but vanish in it, and what is left is
+// what moves.
+inline int mean_of(const std::uint8_t* bgr) noexcept {
+    constexpr int kThird = 21846;  // 65536 / 3
+    return ((bgr[0] + bgr[1] + bgr[2]) * kThird) >> 16;
+}
+
 inline int grey_at(const Frame& frame, int x, int y) noexcept {
     const std::uint8_t* row = frame.pixels.row(y);
-    return frame.format == PixelFormat::grey8 ? row[x] : row[3 * x + 1];
+    return frame.format == PixelFormat::grey8 ? row[x] : mean_of(row + 3 * x);
 }
 
 inline bool inside(int x, int y, Size size) noexcept {
