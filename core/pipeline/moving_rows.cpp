@@ -56,6 +56,26 @@ double DepthDecoder::Impl::drift_px_since(const Frame& frame) const noexcept {
     return coordinate_at(there) - coordinate_at(here);
 }
 
+// Before the newest images are looked at: from where what moves was a frame ago.
+void DepthDecoder::Impl::set_phase_gradient() noexcept {
+    if (!geometry || plan.sines.size() != 1 || !(moving_depth_mm > 0.0)) {
+        return;
+    }
+    const Vec2f here = motion->centre_px();
+    const auto coordinate_at = [&](double dx, double dy) {
+        return geometry->coordinate_of_depth(static_cast<double>(here.x()) + dx,
+                                             static_cast<double>(here.y()) + dy, moving_depth_mm);
+    };
+    // A secant as long as a finger is wide: the lens bends little within it.
+    constexpr double kReach_px = 8.0;
+    const double rad_per_px = 2.0 * std::numbers::pi / plan.sines.front().period_px;
+    const double scale = rad_per_px / (2.0 * kReach_px);
+    motion->set_gradient(Vec2f(static_cast<float>(scale * (coordinate_at(kReach_px, 0.0) -
+                                                           coordinate_at(-kReach_px, 0.0))),
+                               static_cast<float>(scale * (coordinate_at(0.0, kReach_px) -
+                                                           coordinate_at(0.0, -kReach_px)))));
+}
+
 void DepthDecoder::Impl::follow_images() noexcept {
     can_follow = settings.motion == MotionHandling::follow && motion && motion->moving();
     drift_rad_per_cycle = 0.0;
@@ -71,7 +91,9 @@ void DepthDecoder::Impl::follow_images() noexcept {
         for (std::size_t n = 0; n < count; ++n) {
             const Frame& frame = *moved.frames[n];
             const double drift_rad =
-                2.0 * std::numbers::pi / period.period_px * drift_px_since(frame);
+                motion->knows_drift()
+                    ? static_cast<double>(motion->drift_rad_since(frame))
+                    : 2.0 * std::numbers::pi / period.period_px * drift_px_since(frame);
             phases[n] = plan.pattern_phase_rad[static_cast<std::size_t>(frame.pattern)] + drift_rad;
             const double back_s = to_seconds(*last_stamp - frame.stamp);
             if (back_s > 0.0) {
@@ -92,11 +114,12 @@ void DepthDecoder::Impl::follow_images() noexcept {
 void DepthDecoder::Impl::mask_disagreeing(int y, int begin, int end, bool follow,
                                           const RowOut& out) noexcept {
     // A drift of the phase changes the images of one pattern as well, and is no disagreement.
-    const double drift = std::min(drift_rad_per_cycle, std::numbers::pi);
+    const double drift =
+        motion->knows_drift() ? 0.0 : std::min(drift_rad_per_cycle, std::numbers::pi);
     const auto allowed = static_cast<float>(settings.motion_tolerance +
                                             (follow ? 2.0 * std::sin(0.5 * drift) : 0.0));
     for (int x = begin; x < end; ++x) {
-        const auto worst = static_cast<float>(motion->worst_difference(x, y, follow));
+        const float worst = motion->mismatch(x, y, follow);
         if (worst > std::max(kPixelNoise, allowed * out.modulation[x])) {
             out.phase[x] = kNone;
             out.modulation[x] = 0.0F;
