@@ -63,6 +63,9 @@ MotionEstimator::MotionEstimator(Size image, int patterns, const Settings& setti
     for (Small& small : mean_cells_) {
         small.cells.resize(w, h);
     }
+    for (Image<float>* cells : {&turn_re_, &turn_im_, &turn_samples_, &cell_drift_rad_}) {
+        *cells = Image<float>(w, h, 0.0F);
+    }
     still_cost_.resize(w, h);
     follow_cost_.resize(w, h);
     row_disturbed_.resize(static_cast<std::size_t>(h), 0);
@@ -246,18 +249,23 @@ void MotionEstimator::follow_cycle(const Small& now, const Small& before) noexce
         extra_rad_per_s_ = 0.0F;
         return;
     }
-    const Shift shift =
-        whole_cycles_ ? search_cycles(seconds_per_cycle_) : search(now, before, seconds_per_cycle_);
-    // Means of cycles are, in the mean, one image older than the newest of them.
-    lag_s_ = static_cast<float>(seconds_per_cycle_ * (whole_cycles_ ? 0.5 + 1.0 / kCycle : 0.5));
+    const Shift shift = search(now, before, seconds_per_cycle_);
+    take_move(shift, 0.5);
+    moving_ = shift.dx != 0 || shift.dy != 0;
+    if (whole_cycles_) {
+        choose_move(shift);
+        moving_ = true;  // whole cycles also show what comes nearer without moving in the image
+    }
+    remember(now_);
+}
+
+// `shift` leads from now to then; the velocity that it means was reached so many cycles ago.
+void MotionEstimator::take_move(const Shift& shift, double cycles_ago) noexcept {
     const auto seconds = static_cast<float>(seconds_per_cycle_);
-    // `shift` leads from now to then.
     velocity_ =
         Vec2f(static_cast<float>(-shift.dx) / seconds, static_cast<float>(-shift.dy) / seconds);
+    lag_s_ = static_cast<float>(seconds_per_cycle_ * cycles_ago);
     bend_path();
-    remember(now_);
-    // Whole cycles also show what comes nearer without moving in the image.
-    moving_ = whole_cycles_ || shift.dx != 0 || shift.dy != 0;
 }
 
 // Patterns that are held: the move from one frame of a show to the next. Without such a frame the
@@ -332,13 +340,16 @@ void MotionEstimator::update(const FrameWindow& window, const Frame& newest) noe
             std::any_of(row, row + age_.width(), [](std::uint8_t age) { return age > 0; }) ? 1 : 0;
     }
     pair_images(window);
-    if (whole_cycles_ && moving_) {
-        measure_drift();
-    } else if (whole_cycles_) {
+    if (whole_cycles_) {
         prepare_views();
     }
     if (moving_) {
         choose_cells();
+    }
+    if (whole_cycles_) {
+        measure_cell_drift();
+    } else {
+        cell_drift_rad_.fill(0.0F);
     }
 }
 

@@ -78,6 +78,11 @@ class MotionEstimator {
     /// Phase of what moves when `frame` was exposed, less that of now: what the move adds along the
     /// fringes' axis, and what was measured beyond, such as a change of depth.
     [[nodiscard]] float drift_rad_since(const Frame& frame) const noexcept;
+    /// What a cell's phase moved by in a cycle beyond all that, as it stands still or follows, rad:
+    /// a finger, a forearm or a slope is not as fast as the whole.
+    [[nodiscard]] float cell_drift_rad(int cell_x, int cell_y) const noexcept {
+        return cell_drift_rad_.at(cell_x, cell_y);
+    }
     /// Before update(): how the phase of what moves changes along the image at its depth, rad / px.
     void set_gradient(const Vec2f& gradient_rad) noexcept { gradient_rad_ = gradient_rad; }
     /// Image motion of what moves, from when `frame` was exposed to the newest frame, px.
@@ -147,7 +152,15 @@ class MotionEstimator {
     /// False where a shifted image has no such pixel.
     [[nodiscard]] bool look(const Cycle& cycle, bool follow, int x, int y,
                             Fringe& out) const noexcept;
-    void measure_drift() noexcept;
+    /// Adds the turn of the phase from now to before of a cell's samples that are of one point.
+    /// @return how many these are
+    int add_turns(int cell_x, int cell_y, bool follow, std::complex<float>& sum) const noexcept;
+    /// Takes the drift that the move leaves. @return the mismatch of what moves, grey levels
+    float measure_drift() noexcept;
+    void take_move(const Shift& shift, double cycles_ago) noexcept;
+    /// Between the move that the newest images of one pattern found, and that of the cycles' means.
+    void choose_move(const Shift& by_pattern) noexcept;
+    void measure_cell_drift() noexcept;
 
     Size size_;
     int patterns_;
@@ -162,6 +175,7 @@ class MotionEstimator {
     bool whole_cycles_ = false;    // cycles_ hold
     std::array<Cycle, 2> cycles_;  // newest, the one before
     std::array<Small, 2> mean_cells_;
+    Image<float> turn_re_, turn_im_, turn_samples_, cell_drift_rad_;
     float extra_rad_per_s_ = 0.0F;  // beyond the move along the image
     float lag_s_ = 0.0F;            // from when the velocity was what it is, to now
     Vec2f gradient_rad_ = Vec2f::Zero();

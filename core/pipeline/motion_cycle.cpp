@@ -18,6 +18,7 @@ namespace {
 
 using motion::grey_at;
 using motion::inside;
+using motion::kCostCap;
 
 constexpr int kSampleStepPx = 2;
 // Samples whose mean changes by more are not of the same point, grey levels.
@@ -26,6 +27,13 @@ constexpr float kSamePoint = 10.0F;
 constexpr float kLeastAmplitude = 6.0F;
 // Samples below which the phase says nothing.
 constexpr int kLeastSamples = 60;
+// Cells each way whose phase speaks for a cell: fewer follow noise and edges, more blur fingers.
+constexpr int kNear = 3;
+// The same of a cell with its neighbours, and how much of their length the sum of their turns
+// keeps.
+constexpr float kLeastCellSamples = 8.0F;
+constexpr float kLeastAgreement = 0.8F;
+constexpr float kMostCellDrift_rad = 1.0F;
 // How often the drift is measured with taps that the last measurement corrected.
 constexpr int kRounds = 2;
 
@@ -133,31 +141,40 @@ float MotionEstimator::mismatch(int x, int y, bool follow) const noexcept {
     return std::max(std::abs(now.wave - before.wave), std::abs(now.mean - before.mean));
 }
 
+int MotionEstimator::add_turns(int cell_x, int cell_y, bool follow,
+                               std::complex<float>& sum) const noexcept {
+    int samples = 0;
+    for (int j = 0; j < kCellPx; j += kSampleStepPx) {
+        for (int i = 0; i < kCellPx; i += kSampleStepPx) {
+            const int x = cell_x * kCellPx + i;
+            const int y = cell_y * kCellPx + j;
+            Fringe now;
+            Fringe before;
+            if (!inside(x, y, size_) || !look(cycles_[0], follow, x, y, now) ||
+                !look(cycles_[1], follow, x, y, before) ||
+                std::abs(now.mean - before.mean) > kSamePoint) {
+                continue;
+            }
+            const float now_levels = std::abs(now.wave);
+            const float before_levels = std::abs(before.wave);
+            if (now_levels < kLeastAmplitude || before_levels < kLeastAmplitude) {
+                continue;
+            }
+            sum += before.wave * std::conj(now.wave) / (before_levels * now_levels);
+            ++samples;
+        }
+    }
+    return samples;
+}
+
 // The phase that the fringes moved by in a cycle, beyond what the move along the image explains.
-void MotionEstimator::measure_drift() noexcept {
+float MotionEstimator::measure_drift() noexcept {
     for (int round = 0; round < kRounds; ++round) {
         prepare_views();
         std::complex<float> sum;
         int samples = 0;
         for (const auto& cell : active_cells_) {
-            for (int j = 0; j < kCellPx; j += kSampleStepPx) {
-                for (int i = 0; i < kCellPx; i += kSampleStepPx) {
-                    const int x = cell[0] * kCellPx + i;
-                    const int y = cell[1] * kCellPx + j;
-                    Fringe now;
-                    Fringe before;
-                    if (!inside(x, y, size_) || !look(cycles_[0], true, x, y, now) ||
-                        !look(cycles_[1], true, x, y, before) ||
-                        std::abs(now.mean - before.mean) > kSamePoint ||
-                        std::abs(now.wave) < kLeastAmplitude ||
-                        std::abs(before.wave) < kLeastAmplitude) {
-                        continue;
-                    }
-                    sum += before.wave * std::conj(now.wave) /
-                           (std::abs(before.wave) * std::abs(now.wave));
-                    ++samples;
-                }
-            }
+            samples += add_turns(cell[0], cell[1], true, sum);
         }
         if (samples < kLeastSamples) {
             break;
@@ -167,6 +184,68 @@ void MotionEstimator::measure_drift() noexcept {
         extra_rad_per_s_ = std::clamp(extra_rad_per_s_, -most, most);
     }
     prepare_views();
+    float cost = 0.0F;
+    for (const auto& cell : active_cells_) {
+        for (int j = 0; j < kCellPx; j += kSampleStepPx) {
+            for (int i = 0; i < kCellPx; i += kSampleStepPx) {
+                cost += std::min(mismatch(cell[0] * kCellPx + i, cell[1] * kCellPx + j, true),
+                                 static_cast<float>(kCostCap));
+            }
+        }
+    }
+    return cost;
+}
+
+void MotionEstimator::choose_move(const Shift& by_pattern) noexcept {
+    const float extra_rad_per_s = extra_rad_per_s_;
+    const float pattern_cost = measure_drift();
+    // The mean of a cycle is one image older than its newest.
+    constexpr double kMeansAgo = 0.5 + 1.0 / kCycle;
+    const Shift by_mean = search_cycles(seconds_per_cycle_);
+    const float pattern_extra = extra_rad_per_s_;
+    extra_rad_per_s_ = extra_rad_per_s;
+    take_move(by_mean, kMeansAgo);
+    if (measure_drift() >= pattern_cost) {
+        extra_rad_per_s_ = pattern_extra;
+        take_move(by_pattern, 0.5);
+    }
+}
+
+void MotionEstimator::measure_cell_drift() noexcept {
+    for (int cy = 0; cy < age_.height(); ++cy) {
+        for (int cx = 0; cx < age_.width(); ++cx) {
+            std::complex<float> turn;
+            const int samples = disturbed(cx, cy) ? add_turns(cx, cy, follows(cx, cy), turn) : 0;
+            turn_re_.at(cx, cy) = turn.real();
+            turn_im_.at(cx, cy) = turn.imag();
+            turn_samples_.at(cx, cy) = static_cast<float>(samples);
+        }
+    }
+    for (int cy = 0; cy < age_.height(); ++cy) {
+        for (int cx = 0; cx < age_.width(); ++cx) {
+            float& drift_rad = cell_drift_rad_.at(cx, cy);
+            drift_rad = 0.0F;
+            if (!disturbed(cx, cy)) {
+                continue;
+            }
+            std::complex<float> turn;
+            float samples = 0.0F;
+            for (int y = std::max(cy - kNear, 0); y <= std::min(cy + kNear, age_.height() - 1);
+                 ++y) {
+                for (int x = std::max(cx - kNear, 0); x <= std::min(cx + kNear, age_.width() - 1);
+                     ++x) {
+                    if (follows(x, y) == follows(cx, cy)) {
+                        turn += std::complex<float>(turn_re_.at(x, y), turn_im_.at(x, y));
+                        samples += turn_samples_.at(x, y);
+                    }
+                }
+            }
+            // Samples that disagree are of several surfaces: none of their phases is right.
+            if (samples >= kLeastCellSamples && std::abs(turn) >= kLeastAgreement * samples) {
+                drift_rad = std::clamp(std::arg(turn), -kMostCellDrift_rad, kMostCellDrift_rad);
+            }
+        }
+    }
 }
 
 }  // namespace xtrack

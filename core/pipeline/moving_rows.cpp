@@ -128,6 +128,27 @@ void DepthDecoder::Impl::mask_disagreeing(int y, int begin, int end, bool follow
     }
 }
 
+// What is left of the drift, from the middle of the images to the newest of them.
+void DepthDecoder::Impl::add_cell_drift(int cx, int cy, int begin, int end, bool follow,
+                                        const RowOut& out) noexcept {
+    const Images& images = (follow ? following : still).back();
+    const auto count = static_cast<std::size_t>(images.taps.count);
+    double age_s = 0.0;
+    for (std::size_t n = 0; n < count; ++n) {
+        age_s += to_seconds(*last_stamp - images.frames[n]->stamp) / static_cast<double>(count);
+    }
+    const auto drift_rad =
+        static_cast<float>(motion->cell_drift_rad(cx, cy) * age_s / motion->seconds_per_cycle());
+    const auto px_per_rad =
+        static_cast<float>(plan.sines.back().period_px / (2.0 * std::numbers::pi));
+    for (int x = begin; x < end; ++x) {
+        out.phase[x] -= drift_rad;  // NaN stays what it is
+        if (geometry) {
+            out.coordinate[x] -= drift_rad * px_per_rad;
+        }
+    }
+}
+
 void DepthDecoder::Impl::decode_moving_row(int y, const RowOut& out) noexcept {
     constexpr int kCell = MotionEstimator::kCellPx;
     const int cy = std::min(y / kCell, motion->cells_y() - 1);
@@ -153,6 +174,9 @@ void DepthDecoder::Impl::decode_moving_row(int y, const RowOut& out) noexcept {
             std::copy(moved.coordinate + begin, moved.coordinate + end, out.coordinate + begin);
         }
         mask_disagreeing(y, begin, end, follow, out);
+        if (motion->knows_drift()) {
+            add_cell_drift(cx, cy, begin, end, follow, out);
+        }
     }
 }
 
