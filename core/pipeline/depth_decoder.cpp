@@ -101,6 +101,9 @@ Result<void> DepthDecoder::Impl::prepare(const Rig& rig) {
     if (settings.motion != MotionHandling::off && plan.motion_matters()) {
         MotionEstimator::Settings motion_settings;
         motion_settings.max_shift_px = settings.max_motion_px;
+        if (plan.cycle && plan.pattern_count == 3) {
+            motion_settings.phases_rad = plan.pattern_phase_rad;
+        }
         motion.emplace(size, plan.pattern_count, motion_settings);
         moving_depths.reserve(static_cast<std::size_t>(motion->cells_x()) *
                               static_cast<std::size_t>(motion->cells_y()));
@@ -135,6 +138,7 @@ DecodeStatus DepthDecoder::Impl::push(const FramePtr& frame) noexcept {
     last_stamp = frame->stamp;
     window.push(frame);
     if (motion) {
+        set_phase_gradient();
         motion->update(window, *frame);
     }
     for (const int pattern : plan.needed) {

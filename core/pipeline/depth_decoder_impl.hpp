@@ -80,8 +80,11 @@ struct DepthDecoder::Impl {
     /// The chosen images once more, moved along with what moves, their taps corrected.
     void follow_images() noexcept;
     [[nodiscard]] double find_moving_depth_mm() noexcept;
+    void set_phase_gradient() noexcept;
     [[nodiscard]] double drift_px_since(const Frame& frame) const noexcept;
     void decode_moving_row(int y, const RowOut& out) noexcept;
+    void add_cell_drift(int cx, int cy, int begin, int end, bool follow,
+                        const RowOut& out) noexcept;
     void mask_disagreeing(int y, int begin, int end, bool follow, const RowOut& out) noexcept;
 
     DecodeSettings settings;

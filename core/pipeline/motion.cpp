@@ -60,6 +60,12 @@ MotionEstimator::MotionEstimator(Size image, int patterns, const Settings& setti
     for (Image<std::uint8_t>* cells : {&age_, &follows_}) {
         *cells = Image<std::uint8_t>(w, h, 0);
     }
+    for (Small& small : mean_cells_) {
+        small.cells.resize(w, h);
+    }
+    for (Image<float>* cells : {&turn_re_, &turn_im_, &turn_samples_, &cell_drift_rad_}) {
+        *cells = Image<float>(w, h, 0.0F);
+    }
     still_cost_.resize(w, h);
     follow_cost_.resize(w, h);
     row_disturbed_.resize(static_cast<std::size_t>(h), 0);
@@ -81,6 +87,8 @@ void MotionEstimator::clear() noexcept {
     history_count_ = 0;
     moving_ = false;
     held_ = false;
+    whole_cycles_ = false;
+    extra_rad_per_s_ = 0.0F;
 }
 
 void MotionEstimator::shrink(const Frame& frame, Image<std::uint8_t>& cells) const noexcept {
@@ -178,10 +186,9 @@ bool MotionEstimator::enough_moved() const noexcept {
 Vec2f MotionEstimator::path_since(const Frame& frame) const noexcept {
     const auto age = static_cast<float>(to_seconds(now_ - frame.stamp));
     if (!held_) {
-        // The velocity is the mean over the last cycle; the acceleration bends the path between its
-        // ends, which stay where they were found.
-        const auto cycle = static_cast<float>(seconds_per_cycle_);
-        return velocity_ * age + acceleration_ * (0.5F * age * (cycle - age));
+        // The velocity is a mean, reached so long ago; the acceleration bends the path. Where the
+        // mean is that of the last cycle, its ends stay where they were found.
+        return velocity_ * age + acceleration_ * (age * (lag_s_ - 0.5F * age));
     }
     // The velocity is known at the moments in the history, and even changes between.
     Vec2f path = Vec2f::Zero();
@@ -239,16 +246,26 @@ void MotionEstimator::follow_cycle(const Small& now, const Small& before) noexce
     velocity_ = Vec2f::Zero();
     if (!enough_moved()) {
         history_count_ = 0;
+        extra_rad_per_s_ = 0.0F;
         return;
     }
     const Shift shift = search(now, before, seconds_per_cycle_);
+    take_move(shift, 0.5);
+    moving_ = shift.dx != 0 || shift.dy != 0;
+    if (whole_cycles_) {
+        choose_move(shift);
+        moving_ = true;  // whole cycles also show what comes nearer without moving in the image
+    }
+    remember(now_);
+}
+
+// `shift` leads from now to then; the velocity that it means was reached so many cycles ago.
+void MotionEstimator::take_move(const Shift& shift, double cycles_ago) noexcept {
     const auto seconds = static_cast<float>(seconds_per_cycle_);
-    // `shift` leads from now to then.
     velocity_ =
         Vec2f(static_cast<float>(-shift.dx) / seconds, static_cast<float>(-shift.dy) / seconds);
+    lag_s_ = static_cast<float>(seconds_per_cycle_ * cycles_ago);
     bend_path();
-    remember(now_);
-    moving_ = shift.dx != 0 || shift.dy != 0;
 }
 
 // Patterns that are held: the move from one frame of a show to the next. Without such a frame the
@@ -279,7 +296,8 @@ void MotionEstimator::update(const FrameWindow& window, const Frame& newest) noe
     small.count = window.entries(newest.pattern)[0].count;
     now_ = newest.stamp;
     moving_ = false;
-    pairs_.clear();  // they point to frames that the window may have let go
+    pairs_.clear();  // they and the cycles point to frames that the window may have let go
+    whole_cycles_ = false;
     age_cells();
     const auto comparable = [&](const FrameWindow::Entry* entry) -> const Small* {
         const Small* found = find_small(entry);
@@ -301,6 +319,13 @@ void MotionEstimator::update(const FrameWindow& window, const Frame& newest) noe
     const std::uint64_t pushes = window.entries(newest.pattern)[0].count - last->count;
     const int lifetime = static_cast<int>(std::min<std::uint64_t>(2 * pushes, 255));
     mark_moving(small, *cycle, lifetime);
+    whole_cycles_ = find_cycles(window, newest);
+    if (whole_cycles_) {
+        for (std::size_t ago = 0; ago < cycles_.size(); ++ago) {
+            mean_cells(cycles_[ago], mean_cells_[ago].cells);
+            mean_cells_[ago].frame = cycles_[ago].frames.front();
+        }
+    }
     if (!held_) {
         follow_cycle(small, *cycle);
     } else {
@@ -315,8 +340,16 @@ void MotionEstimator::update(const FrameWindow& window, const Frame& newest) noe
             std::any_of(row, row + age_.width(), [](std::uint8_t age) { return age > 0; }) ? 1 : 0;
     }
     pair_images(window);
+    if (whole_cycles_) {
+        prepare_views();
+    }
     if (moving_) {
         choose_cells();
+    }
+    if (whole_cycles_) {
+        measure_cell_drift();
+    } else {
+        cell_drift_rad_.fill(0.0F);
     }
 }
 
@@ -363,6 +396,7 @@ void MotionEstimator::pair_images(const FrameWindow& window) noexcept {
 void MotionEstimator::choose_cells() noexcept {
     constexpr int kSamplesAlong = kCellPx / kSampleStepPx;
     constexpr auto kSamples = static_cast<float>(kSamplesAlong * kSamplesAlong);
+    constexpr auto kCap = static_cast<float>(kCostCap);
     for (int cy = 0; cy < age_.height(); ++cy) {
         for (int cx = 0; cx < age_.width(); ++cx) {
             if (age_.at(cx, cy) == 0) {
@@ -370,18 +404,18 @@ void MotionEstimator::choose_cells() noexcept {
                 follow_cost_.at(cx, cy) = 0.0F;
                 continue;
             }
-            int still = 0;
-            int follow = 0;
+            float still = 0.0F;
+            float follow = 0.0F;
             for (int j = 0; j < kCellPx; j += kSampleStepPx) {
                 for (int i = 0; i < kCellPx; i += kSampleStepPx) {
                     const int x = cx * kCellPx + i;
                     const int y = cy * kCellPx + j;
-                    still += std::min(worst_difference(x, y, false), kCostCap);
-                    follow += std::min(worst_difference(x, y, true), kCostCap);
+                    still += std::min(mismatch(x, y, false), kCap);
+                    follow += std::min(mismatch(x, y, true), kCap);
                 }
             }
-            still_cost_.at(cx, cy) = static_cast<float>(still) / kSamples;
-            follow_cost_.at(cx, cy) = static_cast<float>(follow) / kSamples;
+            still_cost_.at(cx, cy) = still / kSamples;
+            follow_cost_.at(cx, cy) = follow / kSamples;
         }
     }
     Vec2f sum = Vec2f::Zero();

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <array>
+#include <complex>
 #include <cstdint>
 #include <vector>
 
 #include <xtrack/frame.hpp>
 #include <xtrack/image.hpp>
 
+#include "core/decode/taps.hpp"
 #include "core/pipeline/frame_window.hpp"
 
 namespace xtrack {
@@ -35,6 +37,8 @@ class MotionEstimator {
     struct Settings {
         float noise_levels = 4.0F;  ///< mean difference of a cell that counts as moving
         int max_shift_px = 120;     ///< between two images of one pattern
+        /// Phase of each pattern where they are one cycle of three equal steps, else empty.
+        std::vector<double> phases_rad;
     };
 
     MotionEstimator(Size image, int patterns, const Settings& settings);
@@ -66,6 +70,21 @@ class MotionEstimator {
     /// Largest difference between the two newest images of a pattern, over all patterns, at a pixel
     /// of the newest frame that follows the move or stands still; grey levels.
     [[nodiscard]] int worst_difference(int x, int y, bool follow) const noexcept;
+    /// The same where two whole cycles of three were seen, but of the fringes that the images of
+    /// each give, and their mean: free of what the drift of the phase changes in the images.
+    [[nodiscard]] float mismatch(int x, int y, bool follow) const noexcept;
+    /// True where mismatch() is free of the drift, and drift_rad_since() knows it.
+    [[nodiscard]] bool knows_drift() const noexcept { return whole_cycles_; }
+    /// Phase of what moves when `frame` was exposed, less that of now: what the move adds along the
+    /// fringes' axis, and what was measured beyond, such as a change of depth.
+    [[nodiscard]] float drift_rad_since(const Frame& frame) const noexcept;
+    /// What a cell's phase moved by in a cycle beyond all that, as it stands still or follows, rad:
+    /// a finger, a forearm or a slope is not as fast as the whole.
+    [[nodiscard]] float cell_drift_rad(int cell_x, int cell_y) const noexcept {
+        return cell_drift_rad_.at(cell_x, cell_y);
+    }
+    /// Before update(): how the phase of what moves changes along the image at its depth, rad / px.
+    void set_gradient(const Vec2f& gradient_rad) noexcept { gradient_rad_ = gradient_rad; }
     /// Image motion of what moves, from when `frame` was exposed to the newest frame, px.
     [[nodiscard]] Vec2f path_since(const Frame& frame) const noexcept;
     /// Centre of the cells that follow, px of the newest frame.
@@ -74,6 +93,8 @@ class MotionEstimator {
     [[nodiscard]] int cells_y() const noexcept { return age_.height(); }
 
  private:
+    static constexpr std::size_t kCycle = 3;
+    static constexpr float kNoMatch = 255.0F;
     // Means of cells. Found again by the frame's count in the window: another frame may come to
     // lie where one was that the window let go.
     struct Small {
@@ -92,10 +113,14 @@ class MotionEstimator {
     /// From now to before, by the listed cells.
     [[nodiscard]] Shift search(const Small& now, const Small& before,
                                double seconds) const noexcept;
+    /// The same of the means of whole cycles.
+    [[nodiscard]] Shift search_cycles(double seconds) const noexcept;
     [[nodiscard]] Shift search_cells(const Small& now, const Small& before,
                                      double seconds) const noexcept;
-    [[nodiscard]] Shift search_pixels(const Frame& now, const Frame& before, Shift around,
-                                      int radius, int step) const noexcept;
+    /// @param now, before grey level of a pixel; @param saw_row whether `before` saw a row
+    template <class Now, class Before, class Saw>
+    [[nodiscard]] Shift search_pixels(const Now& now, const Before& before, const Saw& saw_row,
+                                      Shift around, int radius, int step) const noexcept;
     [[nodiscard]] bool enough_moved() const noexcept;
     void follow_cycle(const Small& now, const Small& before) noexcept;
     void follow_held(const Small& now, const Small* before) noexcept;
@@ -103,6 +128,39 @@ class MotionEstimator {
     void bend_path() noexcept;
     void choose_cells() noexcept;
     void pair_images(const FrameWindow& window) noexcept;
+
+    // How a cycle's images are laid on top of each other, and decoded.
+    struct View {
+        std::array<Shift, kCycle> shift;
+        TapSet taps;
+        std::complex<float> mean_turn;  // of e^{i phase}
+        bool usable = false;
+    };
+    struct Cycle {
+        std::array<const Frame*, kCycle> frames{};  // by pattern; the window holds them
+        std::array<const Small*, kCycle> cells{};
+        std::array<View, 2> views;  // standing still, following
+    };
+    struct Fringe {
+        std::complex<float> wave;  // amplitude and phase
+        float mean = 0.0F;
+    };
+    [[nodiscard]] bool find_cycles(const FrameWindow& window, const Frame& newest) noexcept;
+    [[nodiscard]] static int mean_at(const Cycle& cycle, int x, int y) noexcept;
+    void mean_cells(const Cycle& cycle, Image<std::uint8_t>& cells) const noexcept;
+    void prepare_views() noexcept;
+    /// False where a shifted image has no such pixel.
+    [[nodiscard]] bool look(const Cycle& cycle, bool follow, int x, int y,
+                            Fringe& out) const noexcept;
+    /// Adds the turn of the phase from now to before of a cell's samples that are of one point.
+    /// @return how many these are
+    int add_turns(int cell_x, int cell_y, bool follow, std::complex<float>& sum) const noexcept;
+    /// Takes the drift that the move leaves. @return the mismatch of what moves, grey levels
+    float measure_drift() noexcept;
+    void take_move(const Shift& shift, double cycles_ago) noexcept;
+    /// Between the move that the newest images of one pattern found, and that of the cycles' means.
+    void choose_move(const Shift& by_pattern) noexcept;
+    void measure_cell_drift() noexcept;
 
     Size size_;
     int patterns_;
@@ -114,6 +172,13 @@ class MotionEstimator {
     Vec2f velocity_ = Vec2f::Zero();
     Vec2f acceleration_ = Vec2f::Zero();
     Vec2f centre_ = Vec2f::Zero();
+    bool whole_cycles_ = false;    // cycles_ hold
+    std::array<Cycle, 2> cycles_;  // newest, the one before
+    std::array<Small, 2> mean_cells_;
+    Image<float> turn_re_, turn_im_, turn_samples_, cell_drift_rad_;
+    float extra_rad_per_s_ = 0.0F;  // beyond the move along the image
+    float lag_s_ = 0.0F;            // from when the velocity was what it is, to now
+    Vec2f gradient_rad_ = Vec2f::Zero();
     std::vector<SmallSlot> small_;
     Image<std::uint8_t> age_;  // pushes for which a cell stays disturbed
     Image<std::uint8_t> follows_;

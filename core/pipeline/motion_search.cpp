@@ -62,8 +62,9 @@ Shift MotionEstimator::search_cells(const Small& now, const Small& before,
     return best;
 }
 
-Shift MotionEstimator::search_pixels(const Frame& now, const Frame& before, Shift around,
-                                     int radius, int step) const noexcept {
+template <class Now, class Before, class Saw>
+Shift MotionEstimator::search_pixels(const Now& now, const Before& before, const Saw& saw_row,
+                                     Shift around, int radius, int step) const noexcept {
     Shift best = around;
     int best_cost = std::numeric_limits<int>::max();
     for (int dy = around.dy - radius; dy <= around.dy + radius; dy += step) {
@@ -81,10 +82,9 @@ Shift MotionEstimator::search_pixels(const Frame& now, const Frame& before, Shif
                     if (!inside(x, y, size_)) {
                         continue;
                     }
-                    const int difference =
-                        inside(x + dx, y + dy, size_) && saw(before, y + dy)
-                            ? std::abs(grey_at(now, x, y) - grey_at(before, x + dx, y + dy))
-                            : kCostCap;
+                    const int difference = inside(x + dx, y + dy, size_) && saw_row(y + dy)
+                                               ? std::abs(now(x, y) - before(x + dx, y + dy))
+                                               : kCostCap;
                     cost += std::min(difference, kCostCap);
                 }
                 if (cost >= best_cost) {
@@ -102,9 +102,21 @@ Shift MotionEstimator::search_pixels(const Frame& now, const Frame& before, Shif
 
 Shift MotionEstimator::search(const Small& now, const Small& before,
                               double seconds) const noexcept {
+    const auto now_at = [&](int x, int y) { return grey_at(*now.frame, x, y); };
+    const auto before_at = [&](int x, int y) { return grey_at(*before.frame, x, y); };
+    const auto saw_row = [&](int y) { return saw(*before.frame, y); };
     Shift shift = search_cells(now, before, seconds);
-    shift = search_pixels(*now.frame, *before.frame, shift, kCellPx - 2, 2);
-    return search_pixels(*now.frame, *before.frame, shift, 1, 1);
+    shift = search_pixels(now_at, before_at, saw_row, shift, kCellPx - 2, 2);
+    return search_pixels(now_at, before_at, saw_row, shift, 1, 1);
+}
+
+Shift MotionEstimator::search_cycles(double seconds) const noexcept {
+    const auto now_at = [&](int x, int y) { return mean_at(cycles_[0], x, y); };
+    const auto before_at = [&](int x, int y) { return mean_at(cycles_[1], x, y); };
+    const auto saw_row = [](int) { return true; };
+    Shift shift = search_cells(mean_cells_[0], mean_cells_[1], seconds);
+    shift = search_pixels(now_at, before_at, saw_row, shift, kCellPx - 2, 2);
+    return search_pixels(now_at, before_at, saw_row, shift, 1, 1);
 }
 
 }  // namespace xtrack

@@ -57,6 +57,26 @@ double DepthDecoder::Impl::drift_px_since(const Frame& frame) const noexcept {
     return coordinate_at(there) - coordinate_at(here);
 }
 
+// Before the newest images are looked at: from where what moves was a frame ago.
+void DepthDecoder::Impl::set_phase_gradient() noexcept {
+    if (!geometry || plan.sines.size() != 1 || !(moving_depth_mm > 0.0)) {
+        return;
+    }
+    const Vec2f here = motion->centre_px();
+    const auto coordinate_at = [&](double dx, double dy) {
+        return geometry->coordinate_of_depth(static_cast<double>(here.x()) + dx,
+                                             static_cast<double>(here.y()) + dy, moving_depth_mm);
+    };
+    // A secant as long as a finger is wide: the lens bends little within it.
+    constexpr double kReach_px = 8.0;
+    const double rad_per_px = 2.0 * std::numbers::pi / plan.sines.front().period_px;
+    const double scale = rad_per_px / (2.0 * kReach_px);
+    motion->set_gradient(Vec2f(static_cast<float>(scale * (coordinate_at(kReach_px, 0.0) -
+                                                           coordinate_at(-kReach_px, 0.0))),
+                               static_cast<float>(scale * (coordinate_at(0.0, kReach_px) -
+                                                           coordinate_at(0.0, -kReach_px)))));
+}
+
 void DepthDecoder::Impl::follow_images() noexcept {
     can_follow = moves();
     drift_rad_per_cycle = 0.0;
@@ -73,7 +93,9 @@ void DepthDecoder::Impl::follow_images() noexcept {
         for (std::size_t n = 0; n < count; ++n) {
             const Frame& frame = *moved.frames[n];
             const double drift_rad =
-                2.0 * std::numbers::pi / period.period_px * drift_px_since(frame);
+                motion->knows_drift()
+                    ? static_cast<double>(motion->drift_rad_since(frame))
+                    : 2.0 * std::numbers::pi / period.period_px * drift_px_since(frame);
             drifts[n] = drift_rad;
             phases[n] = plan.pattern_phase_rad[static_cast<std::size_t>(frame.pattern)] + drift_rad;
             const double back_s = to_seconds(*last_stamp - frame.stamp);
@@ -105,15 +127,37 @@ void DepthDecoder::Impl::follow_images() noexcept {
 void DepthDecoder::Impl::mask_disagreeing(int y, int begin, int end, bool follow,
                                           const RowOut& out) noexcept {
     // A drift of the phase changes the images of one pattern as well, and is no disagreement.
-    const double drift = std::min(drift_rad_per_cycle, std::numbers::pi);
+    const double drift =
+        motion->knows_drift() ? 0.0 : std::min(drift_rad_per_cycle, std::numbers::pi);
     const auto allowed = static_cast<float>(settings.motion_tolerance +
                                             (follow ? 2.0 * std::sin(0.5 * drift) : 0.0));
     for (int x = begin; x < end; ++x) {
-        const auto worst = static_cast<float>(motion->worst_difference(x, y, follow));
+        const float worst = motion->mismatch(x, y, follow);
         if (worst > std::max(kPixelNoise, allowed * out.modulation[x])) {
             out.phase[x] = kNone;
             out.modulation[x] = 0.0F;
             out.coordinate[x] = kNone;
+        }
+    }
+}
+
+// What is left of the drift, from the middle of the images to the newest of them.
+void DepthDecoder::Impl::add_cell_drift(int cx, int cy, int begin, int end, bool follow,
+                                        const RowOut& out) noexcept {
+    const Images& images = (follow ? following : still).back();
+    const auto count = static_cast<std::size_t>(images.taps.count);
+    double age_s = 0.0;
+    for (std::size_t n = 0; n < count; ++n) {
+        age_s += to_seconds(*last_stamp - images.frames[n]->stamp) / static_cast<double>(count);
+    }
+    const auto drift_rad =
+        static_cast<float>(motion->cell_drift_rad(cx, cy) * age_s / motion->seconds_per_cycle());
+    const auto px_per_rad =
+        static_cast<float>(plan.sines.back().period_px / (2.0 * std::numbers::pi));
+    for (int x = begin; x < end; ++x) {
+        out.phase[x] -= drift_rad;  // NaN stays what it is
+        if (geometry) {
+            out.coordinate[x] -= drift_rad * px_per_rad;
         }
     }
 }
@@ -143,6 +187,9 @@ void DepthDecoder::Impl::decode_moving_row(int y, const RowOut& out) noexcept {
             std::copy(moved.coordinate + begin, moved.coordinate + end, out.coordinate + begin);
         }
         mask_disagreeing(y, begin, end, follow, out);
+        if (motion->knows_drift()) {
+            add_cell_drift(cx, cy, begin, end, follow, out);
+        }
     }
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <memory>
 #include <vector>
 
@@ -97,6 +99,86 @@ TEST(Motion, ReadsNoFrameThatTheWindowGaveBack) {
         }
     }
 }
+
+// A card before a wall, with a texture of its own, that moves along the axis the fringes change
+// along, and nearer.
+class SlidingCard {
+ public:
+    static constexpr double kWall_mm = 1000.0;
+    static constexpr int kWidth_px = 60;
+    static constexpr int kHeight_px = 64;
+    static constexpr int kTop_px = 16;
+
+    SlidingCard(int step_px, double nearer_mm) : step_px_(step_px), nearer_mm_(nearer_mm) {}
+
+    [[nodiscard]] static Rig rig() {
+        Rig rig = plane_rig({192, 96});
+        rig.camera.matrix(0, 0) = 240.0;
+        rig.camera.matrix(1, 1) = 240.0;
+        rig.projector_from_camera_T.x() = 200.0;
+        return rig;
+    }
+    // Unique from 400 to 1200 mm, and fine enough that a cycle's move shows.
+    [[nodiscard]] static PatternSequence patterns() {
+        return three_step_sequence(Axis::x, {512, 384}, 140.0);
+    }
+    [[nodiscard]] int left_px(int n) const { return 70 + step_px_ * (n - 9); }
+    [[nodiscard]] double z_mm(int n) const { return 700.0 - nearer_mm_ * n; }
+    [[nodiscard]] FramePtr frame(int n) const {
+        auto seen = plane_frame(rig(), patterns(), n % 3, n, kWall_mm);
+        const auto card = plane_frame(rig(), patterns(), n % 3, n, z_mm(n));
+        for (int y = kTop_px; y < kTop_px + kHeight_px; ++y) {
+            for (int x = 0; x < kWidth_px; ++x) {
+                // Blotches of some pixels, such as skin and the gaps of fingers have.
+                const bool dark = ((x / 7) * 5 + (y / 9) * 3) % 4 == 0;
+                const int at = left_px(n) + x;
+                seen->pixels.at(at, y) = static_cast<std::uint8_t>(
+                    std::lround((dark ? 0.7 : 1.0) * card->pixels.at(at, y)));
+            }
+        }
+        return seen;
+    }
+
+ private:
+    int step_px_;
+    double nearer_mm_;
+};
+
+struct Slide {
+    int step_px;
+    double nearer_mm;
+};
+class Slides : public testing::TestWithParam<Slide> {};
+
+TEST_P(Slides, AlongTheFringesAreFollowedToTheNewestFrame) {
+    const SlidingCard card(GetParam().step_px, GetParam().nearer_mm);
+    const Rig rig = SlidingCard::rig();
+    auto decoder = DepthDecoder::create(rig, SlidingCard::patterns(), rig.camera.size, {});
+    ASSERT_TRUE(decoder) << decoder.error().message;
+    constexpr int kFrames = 15;
+    for (int n = 0; n < kFrames; ++n) {
+        decoder->push(card.frame(n));
+    }
+    const DepthFrame& depth = decoder->depth();
+    ASSERT_EQ(depth.sequence, static_cast<std::uint64_t>(kFrames - 1));
+    const double wanted_mm = card.z_mm(kFrames - 1);
+    constexpr int kEdge_px = 4;
+    int all = 0;
+    int close = 0;
+    for (int y = SlidingCard::kTop_px + kEdge_px;
+         y < SlidingCard::kTop_px + SlidingCard::kHeight_px - kEdge_px; ++y) {
+        for (int x = kEdge_px; x < SlidingCard::kWidth_px - kEdge_px; ++x) {
+            const int at = card.left_px(kFrames - 1) + x;
+            ++all;
+            close += std::abs(depth.depth.at(at, y) * depth.depth_unit_mm - wanted_mm) < 20.0;
+        }
+    }
+    EXPECT_GT(close, 9 * all / 10) << close << " of " << all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Motion, Slides,
+                         testing::Values(Slide{0, 0.0}, Slide{3, 0.0}, Slide{-3, 0.0},
+                                         Slide{0, 10.0}, Slide{2, 8.0}));
 
 // A bright stripe on black that moves down the image.
 std::shared_ptr<Frame> stripe_frame(const Rig& rig, int n, int top) {
