@@ -35,6 +35,7 @@ enum class SimAction : std::uint8_t {
     swipe_down,
     push,   ///< toward the screen, stays, returns
     pinch,  ///< thumb and index close, hold, open
+    wave,   ///< to and fro, left and right, five turns
 };
 
 /// One line of a script.
