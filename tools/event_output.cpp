@@ -28,7 +28,9 @@ Json time_json(const TimeStatistics& t) {
         {"count", t.count}, {"median_us", t.median_us}, {"p99_us", t.p99_us}, {"max_us", t.max_us}};
 }
 
-bool one_shot(GestureType type) { return type == GestureType::swipe || type == GestureType::push; }
+bool one_shot(GestureType type) {
+    return type == GestureType::swipe || type == GestureType::push || type == GestureType::wave;
+}
 
 }  // namespace
 
@@ -89,6 +91,7 @@ std::string to_json(const HandFrame& hands, const Hand& hand) {
                                                        : Json(nullptr)},
         {"grab", rounded(hand.grab_value, 100.0)},
         {"confidence", rounded(hand.confidence, 100.0)},
+        {"metric", hands.metric},
     };
     return json.dump();
 }

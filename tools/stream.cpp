@@ -20,10 +20,11 @@ namespace xtrack::tools {
 
 namespace {
 
-constexpr std::array<std::pair<const char*, bool GestureSettings::*>, 3> kSwitches = {{
+constexpr std::array<std::pair<const char*, bool GestureSettings::*>, 4> kSwitches = {{
     {"swipe", &GestureSettings::swipe},
     {"push", &GestureSettings::push},
     {"pinch", &GestureSettings::pinch},
+    {"wave", &GestureSettings::wave},
 }};
 
 std::string known_gestures() {
@@ -67,9 +68,9 @@ class StopOnInterrupt {
 }  // namespace
 
 void add_stream_options(CLI::App& command, StreamOptions& options) {
-    command.add_option(
-        "--gestures", options.gestures,
-        "Comma-separated list of what is recognised: " + known_gestures() + " (default: all)");
+    command.add_option("--gestures", options.gestures,
+                       "Comma-separated list of what is recognised: " + known_gestures() +
+                           " (default: all but wave; without a rig: all but pinch)");
     command
         .add_option_function<std::string>(
             "--events", [&options](const std::string& name) { options.events = format_of(name); },

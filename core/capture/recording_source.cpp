@@ -30,9 +30,15 @@ class RecordedFrames final : public FrameSource {
     explicit RecordedFrames(RecordingReader recording)
         : recording_(std::move(recording)),
           pool_(pooled_frames(recording_.image_size()), recording_.image_size(),
-                PixelFormat::grey8) {}
+                PixelFormat::grey8) {
+        if (recording_.has_rig()) {
+            rig_ = recording_.rig();
+        } else {
+            rig_.camera.size = recording_.image_size();
+        }
+    }
 
-    [[nodiscard]] const Rig& rig() const override { return recording_.rig(); }
+    [[nodiscard]] const Rig& rig() const override { return rig_; }
     [[nodiscard]] const PatternSequence& patterns() const override { return recording_.patterns(); }
 
     Item next(Duration /*timeout*/) override {
@@ -56,6 +62,7 @@ class RecordedFrames final : public FrameSource {
 
  private:
     RecordingReader recording_;
+    Rig rig_;
     base::FramePool pool_;
     std::size_t next_ = 0;
     std::string failure_;

@@ -286,6 +286,8 @@ void ComponentOrders::decide(std::size_t index) noexcept {
         // Where none is possible the most of it is kept, and the volume cuts off the rest.
         order = possible_.best();
         sure = count == 1;
+    } else if (!metric_ && index == 0) {
+        sure = true;  // what most of the image is, is the background
     } else if (bridged_.of(bridged) >= kLeastBridges && is_possible(bridged) &&
                bridged_.of(bridged) >= kBridgeShare * (bridged_.total() + bridge_misses_)) {
         order = bridged;
@@ -294,9 +296,8 @@ void ComponentOrders::decide(std::size_t index) noexcept {
         order = before;
         sure = 2 * sure_before_.of(before) >= before_.of(before);
     } else if (index == 0) {
-        // What most of the image is, is the background: the farthest that it can be.
-        order = metric_ ? (far_is_low_ ? least : most) : order;
-        sure = !metric_;
+        // The same: the farthest that it can be.
+        order = far_is_low_ ? least : most;
     } else if (!is_possible(order)) {
         order = possible_.best();
     }

@@ -27,6 +27,8 @@ constexpr Range kAfterStrokeS{0.25, 0.50};
 constexpr Range kPushLengthMm{140.0, 165.0};
 constexpr Range kPushPeakMmps{600.0, 800.0};
 constexpr Range kPushStayS{0.50, 0.80};
+constexpr Range kWaveLengthMm{90.0, 130.0};
+constexpr Range kWaveStrokeS{0.26, 0.34};
 constexpr Range kPinchCloseS{0.28, 0.45};
 constexpr Range kPinchHoldS{0.30, 0.80};
 constexpr Range kPinchOpenS{0.25, 0.40};
@@ -41,6 +43,7 @@ constexpr double kSwipeMeanMmps = 300.0;
 constexpr double kSwipeMm = 100.0;
 constexpr double kPushMmps = 330.0;
 constexpr double kPushWindowS = 0.240;
+constexpr int kWaveTurns = 4;
 constexpr double kPinchMm = 20.0;
 constexpr double kPinchS = 0.050;
 constexpr double kLookS = 0.001;  // step of the search on the known movement
@@ -57,6 +60,7 @@ const char* name_of(SimAction action) {
         case SimAction::swipe_down: return "swipe_down";
         case SimAction::push: return "push";
         case SimAction::pinch: return "pinch";
+        case SimAction::wave: return "wave";
         case SimAction::idle:
         case SimAction::wander:
         case SimAction::enter:
@@ -75,6 +79,7 @@ Vec3f direction_of(SimAction action) {
         case SimAction::swipe_down: return {0.0F, 1.0F, 0.0F};
         case SimAction::push: return {0.0F, 0.0F, -1.0F};
         case SimAction::pinch:
+        case SimAction::wave:
         case SimAction::idle:
         case SimAction::wander:
         case SimAction::enter:
@@ -132,6 +137,7 @@ class HandMotion::Planner {
             case SimAction::push: push(); break;
             case SimAction::pinch: pinch(); break;
             case SimAction::slide: slide(step); break;
+            case SimAction::wave: wave(); break;
         }
     }
 
@@ -217,6 +223,25 @@ class HandMotion::Planner {
         move_at(from + along * static_cast<float>(length), draw(kPushPeakMmps));
         add_stroke_label(SimAction::push, start, now(), along);
         now() += draw(kPushStayS);
+        move_at(near_home(12.0), draw(kReturnPeakMmps));
+        now() += draw(kBetweenGesturesS);
+    }
+
+    void wave() {
+        constexpr int kStrokes = 6;
+        move_at(near_home(12.0), draw(kWindUpPeakMmps));
+        now() += draw(kPauseS);
+        const Vec3f middle = place();
+        const Vec3f half =
+            direction_of(SimAction::swipe_left) * static_cast<float>(draw(kWaveLengthMm) / 2.0);
+        const double start = now();
+        double commit = start;
+        for (int stroke = 0; stroke < kStrokes; ++stroke) {
+            const float side = stroke % 2 == 0 ? 1.0F : -1.0F;
+            move_to(middle + side * half, now() + draw(kWaveStrokeS));
+            commit = stroke + 1 == kWaveTurns ? now() : commit;
+        }
+        add_label(SimAction::wave, start, now(), commit);
         move_at(near_home(12.0), draw(kReturnPeakMmps));
         now() += draw(kBetweenGesturesS);
     }

@@ -49,15 +49,12 @@ Result<Session> open_simulator(std::string_view preset, const SessionOptions& op
 
 #ifdef XTRACK_HAS_RECORDINGS
 
-/// Gestures are measured in millimetres, so the images need their rig.
-Error rig_missing(const RecordingReader& recording) {
-    const bool fringe = recording.kind() == RecordingKind::fringe;
+/// Depth images need their camera.
+Error camera_missing(const RecordingReader& recording) {
     return {ErrorCode::unsupported,
             (recording.folder() / "rig.yaml").string() +
-                (fringe ? ": missing; gestures need metric depth: add the calibration of the rig, "
-                          "or use `decode` for phase alone"
-                        : ": missing; gestures need positions: add camera_matrix and camera_size "
-                          "of the depth camera")};
+                ": missing; gestures need positions: add camera_matrix and camera_size of the "
+                "depth camera"};
 }
 
 Result<Session> in_recording(const std::filesystem::path& folder, Result<Session> session) {
@@ -80,9 +77,6 @@ Result<Session> open_recording(const std::filesystem::path& folder, const Sessio
                 std::unique_ptr<HandSource>(new HandSequence(std::move(*frames))), options);
         }
         case RecordingKind::fringe: {
-            if (!recording->has_rig()) {
-                return rig_missing(*recording);
-            }
             auto source = frame_source(*recording);
             return source ? in_recording(folder, Session::create(std::move(*source), options))
                           : Result<Session>(source.error());
@@ -90,7 +84,7 @@ Result<Session> open_recording(const std::filesystem::path& folder, const Sessio
         case RecordingKind::depth: break;
     }
     if (!recording->has_rig()) {
-        return rig_missing(*recording);
+        return camera_missing(*recording);
     }
     auto source = depth_source(*recording);
     return source ? in_recording(folder, Session::create(std::move(*source), options))

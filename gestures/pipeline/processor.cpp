@@ -24,6 +24,11 @@ Mat4d facing_the_user() {
 
 Result<Processor> Processor::for_frames(const Rig& rig, const PatternSequence& patterns,
                                         const SessionOptions& options) {
+    const bool has_rig = rig.projector.has_value();
+    if (options.method == DecodeMethod::paper ||
+        (options.method == DecodeMethod::automatic && !has_rig)) {
+        return for_paper(rig, patterns, options);
+    }
     auto decoder = DepthDecoder::create(rig, patterns, rig.camera.size, options.decode);
     if (!decoder) {
         return decoder.error();
@@ -31,6 +36,34 @@ Result<Processor> Processor::for_frames(const Rig& rig, const PatternSequence& p
     auto processor = for_depth(rig, options);
     if (processor) {
         processor->decoder_ = std::move(*decoder);
+    }
+    return processor;
+}
+
+Result<Processor> Processor::for_paper(const Rig& rig, const PatternSequence& patterns,
+                                       const SessionOptions& options) {
+    const bool metric = rig.projector.has_value();
+    PaperSettings settings = options.paper;
+    settings.points = false;
+    auto decoder =
+        PaperDecoder::create(patterns, rig.camera.size, settings, metric ? &rig : nullptr);
+    if (!decoder) {
+        return decoder.error();
+    }
+    SessionOptions adapted = options;
+    if (!metric) {
+        adapted.gestures.pinch = false;
+        adapted.tracker.near_mm = adapted.tracker.far_mm = 0.0;
+    }
+    auto processor =
+        for_depth(metric ? rig : segment::RelativeScene::nominal_rig(rig.camera.size), adapted);
+    if (!processor) {
+        return processor;
+    }
+    processor->paper_ = std::move(*decoder);
+    if (!metric) {
+        processor->relative_.emplace(rig.camera.size, PaperDecoder::kBackground_mm,
+                                     PaperDecoder::kMmPerProjectorPx);
     }
     return processor;
 }
@@ -65,7 +98,7 @@ Result<Processor> Processor::for_hands(const SessionOptions& options) {
 
 bool Processor::decode(const FramePtr& frame, PipelineView& view) {
     const auto begin = Wall::now();
-    const DecodeStatus status = decoder_->push(frame);
+    const DecodeStatus status = paper_ ? paper_->push(frame) : decoder_->push(frame);
     decode_time_.add(Wall::now() - begin);
     if (status.state == DecodeState::rejected) {
         ++rejected_;
@@ -73,8 +106,9 @@ bool Processor::decode(const FramePtr& frame, PipelineView& view) {
     if (status.state != DecodeState::depth_ready) {
         return false;
     }
-    view.decoder = &*decoder_;
-    view.depth = &decoder_->depth();
+    view.decoder = decoder_ ? &*decoder_ : nullptr;
+    view.paper = paper();
+    view.depth = paper_ ? &paper_->depth() : &decoder_->depth();
     return true;
 }
 
@@ -93,7 +127,12 @@ Result<void> Processor::track(const DepthFrame& depth, PipelineView& view) {
         tracker_size_ = depth.depth.size();
     }
     const auto begin = Wall::now();
-    view.camera_hands = &tracker_->track(depth);
+    if (relative_ && relative_->update(depth)) {
+        tracker_->reset();  // it is of another size now, and so is all that it knows
+    }
+    camera_hands_ = tracker_->track(relative_ ? relative_->depth() : depth);
+    camera_hands_.metric = metric();
+    view.camera_hands = &camera_hands_;
     if (tracker_->status() != TrackStatus::ok) {
         ++rejected_;
     }

@@ -9,6 +9,7 @@
 
 #include "core/base/time_histogram.hpp"
 #include "gestures/pipeline/input.hpp"
+#include "gestures/segment/relative_scene.hpp"
 #include "gestures/track/hand_from_joints.hpp"
 #include "gestures/track/pointer.hpp"
 
@@ -33,6 +34,8 @@ class Processor {
 
     /// Tells the state machines that time went on without an item; `now` is on the items' clock.
     std::span<const GestureEvent> advance(Stamp now);
+    [[nodiscard]] PaperDecoder* paper() noexcept { return paper_ ? &*paper_ : nullptr; }
+    [[nodiscard]] bool metric() const noexcept { return !relative_; }
     [[nodiscard]] GestureRecogniser& recogniser() noexcept { return recogniser_; }
 
     [[nodiscard]] const TimeHistogram& decode_time() const noexcept { return decode_time_; }
@@ -45,11 +48,15 @@ class Processor {
     Processor(GestureRecogniser recogniser, const Mat4d& interaction_from_camera)
         : recogniser_(std::move(recogniser)), interaction_from_camera_(interaction_from_camera) {}
 
+    static Result<Processor> for_paper(const Rig& rig, const PatternSequence& patterns,
+                                       const SessionOptions& options);
     [[nodiscard]] bool decode(const FramePtr& frame, PipelineView& view);
     /// Depth images of any size go to a tracker of that size, made when the first one comes.
     [[nodiscard]] Result<void> track(const DepthFrame& depth, PipelineView& view);
 
     std::optional<DepthDecoder> decoder_;
+    std::optional<PaperDecoder> paper_;
+    std::optional<segment::RelativeScene> relative_;  ///< set where depth is
     std::optional<HandTracker> tracker_;
     Size tracker_size_;
     Rig rig_;
@@ -58,6 +65,7 @@ class Processor {
     Pointer pointer_;
     GestureRecogniser recogniser_;
     Mat4d interaction_from_camera_;
+    HandFrame camera_hands_;  ///< with what the tracker does not know
     HandFrame interaction_hands_;
     std::optional<Stamp> newest_;
     /// A depth image is as old as the middle of its window: the hands' time is behind the frames'.

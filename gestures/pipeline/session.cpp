@@ -63,6 +63,11 @@ class Turn {
     bool mine_;
 };
 
+Result<void> no_paper_decoder() {
+    return Error{ErrorCode::unsupported,
+                 "the session decodes by its patterns; make it with DecodeMethod::paper"};
+}
+
 Error already_running() {
     return {ErrorCode::invalid_argument,
             "the session runs already; use one of run(), start() and step() at a time"};
@@ -205,6 +210,23 @@ Result<StepStatus> Session::step(Duration timeout) {
 void Session::stop() noexcept {
     impl_->stop_requested = true;
     impl_->queue.close();
+}
+
+bool Session::metric() const noexcept { return impl_->processor.metric(); }
+
+Result<void> Session::set_paper_settings(const PaperSettings& settings) {
+    PaperDecoder* paper = impl_->processor.paper();
+    if (paper == nullptr) {
+        return no_paper_decoder();
+    }
+    PaperSettings of_session = settings;
+    of_session.points = paper->settings().points;
+    return paper->set_settings(of_session);
+}
+
+Result<void> Session::learn_background() {
+    PaperDecoder* paper = impl_->processor.paper();
+    return paper == nullptr ? no_paper_decoder() : paper->learn_background();
 }
 
 SessionStatistics Session::statistics() const {

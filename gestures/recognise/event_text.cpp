@@ -56,6 +56,7 @@ const char* to_string(GestureType t) noexcept {
         case GestureType::swipe: return "swipe";
         case GestureType::push: return "push";
         case GestureType::pinch: return "pinch";
+        case GestureType::wave: return "wave";
     }
     return "unknown";
 }

@@ -10,6 +10,7 @@
 #include "gestures/recognise/presence.hpp"
 #include "gestures/recognise/push.hpp"
 #include "gestures/recognise/swipe.hpp"
+#include "gestures/recognise/wave.hpp"
 
 namespace xtrack {
 
@@ -25,6 +26,7 @@ using recognise::Presence;
 using recognise::PushMachine;
 using recognise::SwipeMachine;
 using recognise::TransitionLog;
+using recognise::WaveMachine;
 
 /// A hand and its machines.
 struct Slot {
@@ -36,6 +38,7 @@ struct Slot {
     SwipeMachine swipe;
     PushMachine push;
     PinchMachine pinch;
+    WaveMachine wave;
 };
 
 // Two hands that are seen, and two more that were lost a moment ago and may come back.
@@ -114,6 +117,7 @@ struct GestureRecogniser::Impl {
         slot.pinch.drop(c, reason);
         slot.swipe.drop(c, why);
         slot.push.drop(c, why);
+        slot.wave.drop(c, why);
     }
 
     /// A long gap brings several changes at once: frozen, lost, gone.
@@ -159,6 +163,7 @@ struct GestureRecogniser::Impl {
         free->swipe = {};
         free->push = {};
         free->pinch = {};
+        free->wave = {};
         free->presence.appear(now, in_view);
         return *free;
     }
@@ -176,6 +181,12 @@ struct GestureRecogniser::Impl {
         if (settings.pinch) {
             slot.pinch.update(c);
             c.taken = slot.pinch.active();
+        }
+        if (settings.wave) {
+            // A first stroke may become either; who has turned back twice does not swipe.
+            const std::size_t before = out.all().size();
+            slot.wave.update(c);
+            c.taken = c.taken || slot.wave.swings() || out.all().size() != before;
         }
         if (settings.swipe) {
             const std::size_t before = out.all().size();

@@ -68,6 +68,11 @@ constexpr std::array kRanges{
     Range{"pinch_bunch_mm", &S::pinch_bunch_mm, 0.0, 60.0},
     Range{"pinch_bunch_extension", &S::pinch_bunch_extension, 0.0, 1.0},
     Range{"pinch_index_share", &S::pinch_index_share, 0.0, 0.9},
+    Range{"wave_within_ms", &S::wave_within_ms, 300.0, 5000.0},
+    Range{"wave_stroke_mm", &S::wave_stroke_mm, 20.0, 300.0},
+    Range{"wave_off_axis_mm", &S::wave_off_axis_mm, 10.0, 200.0},
+    Range{"wave_rest_mmps", &S::wave_rest_mmps, 10.0, 200.0},
+    Range{"wave_rest_ms", &S::wave_rest_ms, 0.0, 2000.0},
 };
 
 std::string text(double value) {
@@ -109,6 +114,12 @@ Result<void> validate(const GestureSettings& s) {
             return refuse(std::string{r.name} + " is " + text(value) + "; give " + text(r.min) +
                           " to " + text(r.max));
         }
+    }
+    constexpr int kLeastTurns = 2;
+    constexpr int kMostTurns = 12;
+    if (s.wave_turns < kLeastTurns || s.wave_turns > kMostTurns) {
+        return refuse("wave_turns is " + text(s.wave_turns) + "; give " + text(kLeastTurns) +
+                      " to " + text(kMostTurns));
     }
     // Less hysteresis than three sigma chatters at the edge.
     const double release_min_mm = s.pinch_close_mm + 3.0 * s.pinch_noise_mm;

@@ -36,6 +36,7 @@ enum class SimAction : std::uint8_t {
     push,   ///< toward the screen, stays, returns
     pinch,  ///< thumb and index close, hold, open
     slide,  ///< through its resting place at constant velocity, from its first moment to its last
+    wave,   ///< to and fro, left and right, five turns
 };
 
 /// One line of a script.

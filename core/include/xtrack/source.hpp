@@ -38,6 +38,7 @@ class FrameSource {
     FrameSource& operator=(const FrameSource&) = delete;
     virtual ~FrameSource() = default;
 
+    /// Without a calibration: no projector, and of the camera its size alone.
     [[nodiscard]] virtual const Rig& rig() const = 0;
     [[nodiscard]] virtual const PatternSequence& patterns() const = 0;
     /// Waits up to `timeout` for the next frame. Stamps never decrease.

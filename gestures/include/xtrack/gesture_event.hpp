@@ -14,8 +14,8 @@ namespace xtrack {
 
 /// What an event is about. `hand` reports hands coming and going; the rest are gestures.
 /// @since 0.1
-enum class GestureType : std::uint8_t { hand, swipe, push, pinch };
-inline constexpr std::size_t kGestureTypeCount = 4;
+enum class GestureType : std::uint8_t { hand, swipe, push, pinch, wave };
+inline constexpr std::size_t kGestureTypeCount = 5;
 
 /// As the user sees it.
 /// @since 0.1
@@ -53,7 +53,7 @@ struct GestureEvent {
     Vec3f position_mm = Vec3f::Zero();  ///< palm; pinch: between the fingertips. Interaction frame.
     Vec3f velocity_mmps = Vec3f::Zero();
     float progress = 0.0F;    ///< 0..1 of what the gesture needs
-    float value = 0.0F;       ///< swipe, push: mean speed mm/s; pinch: pinch value 0..1
+    float value = 0.0F;       ///< swipe, push: mean speed mm/s; pinch: 0..1; wave: turns
     float confidence = 0.0F;  ///< 0..1
 };
 

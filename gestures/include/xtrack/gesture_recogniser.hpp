@@ -32,7 +32,7 @@ enum class RecogniseStatus {
 struct RecogniserTrace {
     Stamp stamp;
     int hand_id = 0;
-    const char* machine = "";  ///< hand, swipe, push, pinch
+    const char* machine = "";  ///< hand, swipe, push, pinch, wave
     const char* from = "";     ///< state
     const char* event = "";
     const char* to = "";    ///< state; the same as `from` when nothing changed

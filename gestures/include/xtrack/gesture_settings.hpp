@@ -12,6 +12,7 @@ struct GestureSettings {
     bool swipe = true;
     bool push = true;
     bool pinch = true;
+    bool wave = false;  ///< off: who beckons or gesticulates waves too
 
     // --- the hand itself -------------------------------------------------------------------------
     /// Below it a hand counts as not seen. 0..1. MediaPipe's and OpenXR runtimes' usual line.
@@ -125,6 +126,18 @@ struct GestureSettings {
     /// The index does its share of the way that brings the tips together. 0..0.9. Measured: pinches
     /// 0.5..0.85, thumbs that fold in front of the palm 0.1..0.3.
     double pinch_index_share = 0.25;
+
+    // --- wave ------------------------------------------------------------------------------------
+    /// So many turns of the palm, left and right, within so long. 2..12; 300..5000. NiTE1.
+    int wave_turns = 4;
+    double wave_within_ms = 2000.0;
+    /// Way from one turn to the next. 20..300. NiTE1.
+    double wave_stroke_mm = 50.0;
+    /// The palm may stray so far up or down, or to the screen. 10..200. NiTE1.
+    double wave_off_axis_mm = 50.0;
+    /// Slower for so long before the next. 10..200; 0..2000.
+    double wave_rest_mmps = 65.0;
+    double wave_rest_ms = 360.0;
 };
 
 /// What enabled gestures ask of the depth images they are seen in.

@@ -110,6 +110,8 @@ struct HandFrame {
     Stamp stamp;
     Duration span = Duration::zero();  ///< of the depth frame that they were seen in; 0 = not known
     CoordinateFrame coordinates = CoordinateFrame::camera;
+    /// False: seen without a calibration; lengths are in units of which a palm's width has 80.
+    bool metric = true;
     std::array<Hand, kMaxHands> hands{};
     std::size_t count = 0;
 

@@ -12,6 +12,7 @@
 #include <xtrack/hand.hpp>
 #include <xtrack/hand_source.hpp>
 #include <xtrack/hand_tracker.hpp>
+#include <xtrack/paper_decoder.hpp>
 #include <xtrack/result.hpp>
 #include <xtrack/source.hpp>
 
@@ -28,11 +29,25 @@ enum class Pace {
     live,
 };
 
+/// How fringe images become depth.
+/// @since 0.1
+enum class DecodeMethod {
+    /// `pattern` where there is a rig, else `paper`.
+    automatic,
+    /// DepthDecoder: the fringe order from the patterns or the working volume.
+    pattern,
+    /// PaperDecoder: one period, unwrapped in space. Without a rig depth is relative; hands and
+    /// gestures are then measured in palm widths (Session::metric()).
+    paper,
+};
+
 /// What a session is made with; the defaults replay, and recognise everything.
 /// @since 0.1
 struct SessionOptions {
     Pace pace = Pace::replay;
-    DecodeSettings decode;
+    DecodeMethod method = DecodeMethod::automatic;
+    DecodeSettings decode;  ///< of DecodeMethod::pattern
+    PaperSettings paper;    ///< of DecodeMethod::paper
     TrackerSettings tracker;
     GestureSettings gestures;
 };
@@ -52,7 +67,8 @@ enum class StepStatus {
 /// @since 0.1
 struct PipelineView {
     const FramePtr* frame = nullptr;
-    const DepthDecoder* decoder = nullptr;  ///< set when `depth` came from fringes
+    const DepthDecoder* decoder = nullptr;  ///< set when `depth` came from fringes, either this
+    const PaperDecoder* paper = nullptr;    ///< or this
     const DepthFrame* depth = nullptr;
     const HandTracker* tracker = nullptr;          ///< set when `camera_hands` came from depth
     const HandFrame* camera_hands = nullptr;       ///< camera frame
@@ -159,6 +175,21 @@ class Session {
     /// time-outs; what was open is cancelled. Cannot fail; again is harmless. @thread any, a
     /// callback included
     void stop() noexcept;
+
+    /// False where the source has fringes and no rig: depth is relative, and positions, speeds and
+    /// lengths are in nominal millimetres, in which a palm is 80 wide. So are the thresholds: 100
+    /// mm are one and a quarter palm widths. Along the line of sight they are an estimate, good to
+    /// a factor of two. Gestures that compare what is smaller than a hand need true millimetres and
+    /// are not recognised (pinch). @thread any
+    [[nodiscard]] bool metric() const noexcept;
+
+    /// Settings of the PaperDecoder from the next frame on. @thread that of run() or step()
+    /// @errors unsupported: the session has none; invalid_argument, and nothing changed
+    Result<void> set_paper_settings(const PaperSettings& settings);
+    /// Takes the last decode for the empty scene (PaperDecoder::learn_background()).
+    /// @thread that of run() or step()
+    /// @errors unsupported: the session has no PaperDecoder, or nothing was decoded yet; io
+    Result<void> learn_background();
 
     /// Counts and times so far. @thread any
     [[nodiscard]] SessionStatistics statistics() const;

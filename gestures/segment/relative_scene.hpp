@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <xtrack/depth.hpp>
+#include <xtrack/rig.hpp>
+
+#include "gestures/segment/grid.hpp"
+
+namespace xtrack::segment {
+
+/// Relative depth as if it were metric, in *nominal* millimetres in which a palm is 80 mm wide:
+/// what finds, follows and understands hands then works on it, and its thresholds are palm widths.
+///
+/// What fringes give without a calibration is how many projector pixels h a surface is off the
+/// background. Pinholes make that 1/Z = 1/Z0 + h/K. The focal length is taken for the image's width
+/// (a field of view of 53 degrees). K and Z0 follow from the hand, which is what stands out most:
+/// the largest circle in it is a palm's, 40 mm, which says how far away it is, and the background
+/// is taken to lie kBackgroundShare times as far away. A hand that is found smaller or larger
+/// again and again makes a new scale.
+class RelativeScene {
+ public:
+    static constexpr double kPalmRadius_mm = 40.0;
+    static constexpr double kBackgroundShare = 1.6;
+
+    /// @param background_mm, mm_per_px how the depth images that will come code h
+    RelativeScene(Size image, double background_mm, double mm_per_px);
+
+    /// A camera whose image is as wide as it is far.
+    [[nodiscard]] static Rig nominal_rig(Size image);
+
+    /// Takes the next relative depth image. Allocates nothing.
+    /// @return whether the scale is new: what was learnt of the scene before is void
+    bool update(const DepthFrame& relative);
+
+    /// What stands out from the background, in nominal mm, 0 elsewhere; all 0 while nothing has
+    /// stood out yet. Valid until the next update().
+    [[nodiscard]] const DepthFrame& depth() const noexcept { return depth_; }
+
+    /// What was measured in the last image. @{
+    [[nodiscard]] double palm_radius_px() const noexcept { return palm_radius_px_; }  ///< 0: none
+    [[nodiscard]] double palm_height_px() const noexcept { return palm_height_px_; }
+    /// @}
+
+ private:
+    struct Palm {
+        double radius_px = 0.0;
+        double height_px = 0.0;
+    };
+
+    void measure(const DepthFrame& relative);
+    [[nodiscard]] Palm usual_palm();
+    bool rescale();
+    void convert(const DepthFrame& relative);
+    [[nodiscard]] double height_px(double depth_mm) const noexcept {
+        return (background_mm_ - depth_mm) / mm_per_px_;
+    }
+
+    double background_mm_;
+    double mm_per_px_;
+    double focal_px_;
+    Grid grid_;
+    std::vector<float> heights_;
+    std::vector<std::int32_t> distance_;
+    DepthFrame depth_;
+    double palm_radius_px_ = 0.0;
+    double palm_height_px_ = 0.0;
+    static constexpr std::size_t kRemembered = 21;
+    std::array<Palm, kRemembered> palms_{};
+    std::array<double, kRemembered> sorted_{};
+    std::size_t seen_ = 0;
+    std::size_t next_ = 0;
+    double inverse_background_ = 0.0;  ///< 1/Z0, 1/mm; 0: no scale yet
+    double inverse_per_px_ = 0.0;      ///< 1/K
+};
+
+}  // namespace xtrack::segment
