@@ -29,7 +29,7 @@ bool is_simulator(const std::string& source) {
 }
 
 /// `sim` with a seed is another person on another day; without one it is the same as everywhere.
-Result<Session> open(const RunOptions& run, const SessionOptions& options) {
+Result<Session> open(const RunOptions& run, SessionOptions options) {
     if (run.seed == 0 && run.method.empty()) {
         return Session::open(run.source, options);
     }
@@ -52,6 +52,9 @@ Result<Session> open(const RunOptions& run, const SessionOptions& options) {
         const auto shown = show_method(run.method, options.gestures, *settings);
         if (!shown) {
             return shown.error();
+        }
+        if (!info(shown->method).metric) {
+            options.method = DecodeMethod::paper;
         }
         fmt::print(stderr, "method {}: {}\n", info(shown->method).name, shown->reason);
     }

@@ -30,6 +30,27 @@ Pinhole nominal_camera(Size image) {
     return camera;
 }
 
+// For periods that are one image. What is dark or clipped is masked here, by settings that change.
+Result<DepthDecoder> phase_decoder(const PatternSequence& patterns, Size image, const Rig* rig) {
+    DecodeSettings settings;
+    settings.order = OrderSource::none;
+    settings.motion = MotionHandling::off;
+    settings.keep_maps = true;
+    settings.min_modulation = 0.0;
+    return DepthDecoder::create(rig != nullptr ? *rig : Rig{}, patterns, image, settings);
+}
+
+// True where projector coordinates fall as the camera's rise, at any depth.
+bool falls(const Triangulation& geometry, Axis axis, Size image) {
+    constexpr double kAnyDepth_mm = 1000.0;
+    const double u = 0.5 * image.width;
+    const double v = 0.5 * image.height;
+    const bool down = axis == Axis::y;
+    return geometry.coordinate_of_depth(u + (down ? 0.0 : 1.0), v + (down ? 1.0 : 0.0),
+                                        kAnyDepth_mm) <
+           geometry.coordinate_of_depth(u, v, kAnyDepth_mm);
+}
+
 }  // namespace
 
 Result<void> validate(const PaperSettings& settings) {
@@ -104,6 +125,19 @@ Result<PaperDecoder> PaperDecoder::create(const PatternSequence& patterns, Size 
                      "pattern sequence: it has no sines, which spatial unwrapping goes by; use "
                      "three or more phases of one period"};
     }
+    if (plan->sines.back().kind == PeriodKind::ramp) {
+        return Error{ErrorCode::unsupported,
+                     "pattern sequence: ramps jump where they begin again, and are not unwrapped "
+                     "in space; use sines"};
+    }
+    std::optional<DepthDecoder> one_image;
+    if (plan->sines.back().kind != PeriodKind::steps) {
+        auto made = phase_decoder(patterns, image, rig);
+        if (!made) {
+            return made.error();
+        }
+        one_image = *std::move(made);
+    }
     const bool metric = rig != nullptr && rig->projector.has_value();
     if (metric && rig->projector->size != patterns.projector_size) {
         return bad("projector_size of the rig and of the pattern sequence differ");
@@ -129,9 +163,13 @@ Result<PaperDecoder> PaperDecoder::create(const PatternSequence& patterns, Size 
         if (!unwrapper) {
             return unwrapper.error();
         }
-        return PaperDecoder(std::make_unique<Impl>(
-            *std::move(plan), image, settings, *std::move(unwrapper), std::move(geometry),
-            rig != nullptr ? rig->camera : nominal_camera(image)));
+        auto impl = std::make_unique<Impl>(*std::move(plan), image, settings,
+                                           *std::move(unwrapper), std::move(geometry),
+                                           rig != nullptr ? rig->camera : nominal_camera(image));
+        impl->carrier_falls = impl->geometry && impl->plan.carrier() &&
+                              falls(*impl->geometry, patterns.axis, image);
+        impl->one_image = std::move(one_image);
+        return PaperDecoder(std::move(impl));
     });
 }
 
@@ -160,7 +198,16 @@ DecodeStatus PaperDecoder::Impl::push(const FramePtr& frame) noexcept {
     last_stamp = frame->stamp;
     constexpr DecodeStatus kMore{DecodeState::need_more, RejectReason::none};
     if (used[static_cast<std::size_t>(frame->pattern)] == 0) {
+        if (one_image) {
+            (void)one_image->push(frame);
+        }
         return kMore;
+    }
+    if (one_image) {
+        const DecodeStatus status = one_image->push(frame);
+        if (status.state != DecodeState::depth_ready) {
+            return status;
+        }
     }
     window.push(frame);
     const bool complete = std::all_of(period->patterns.begin(), period->patterns.end(),
@@ -221,6 +268,9 @@ void PaperDecoder::forget_background() noexcept {
 }
 
 void PaperDecoder::reset() noexcept {
+    if (impl_->one_image) {
+        impl_->one_image->reset();
+    }
     impl_->window.clear();
     impl_->shown.clear();
     impl_->last_stamp.reset();

@@ -28,6 +28,7 @@ struct PaperDecoder::Impl {
     /// Everything, from the images in `shown`.
     void decode() noexcept;
     void decode_phase() noexcept;
+    void take_phase() noexcept;
     void decode_phase_rows(int begin, int end) noexcept;
     const std::uint8_t* grey_row(const Frame& frame, int y, std::size_t buffer) noexcept;
     /// The background's phase off each pixel's. False while there is none.
@@ -48,6 +49,10 @@ struct PaperDecoder::Impl {
     FrameWindow shown;   // of what was decoded last
     std::optional<Stamp> last_stamp;
     bool decoded = false;
+
+    /// Of periods that are one image, in colours or in space; steps are decoded here.
+    std::optional<DepthDecoder> one_image;
+    bool carrier_falls = false;  // the phase of a carrier falls with the pixel's index
 
     SpatialUnwrapper unwrapper;
     std::optional<Triangulation> geometry;

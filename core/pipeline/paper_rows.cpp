@@ -69,7 +69,30 @@ void PaperDecoder::Impl::decode_phase_rows(int begin, int end) noexcept {
     }
 }
 
+void PaperDecoder::Impl::take_phase() noexcept {
+    const PhaseMap& seen = one_image->phase();
+    const auto least = static_cast<float>(settings.min_modulation);
+    const auto pattern_rad = static_cast<float>(period->phases_rad.front());
+    for (int y = 0; y < size.height; ++y) {
+        for (int x = 0; x < size.width; ++x) {
+            const float modulation = seen.modulation.at(x, y);
+            const bool good = modulation >= least;
+            float phase = seen.phase_rad.at(x, y);
+            if (carrier_falls) {
+                phase = std::remainder(-phase - 2.0F * pattern_rad,
+                                       static_cast<float>(kTurn_rad));
+            }
+            phase_map.phase_rad.at(x, y) = good ? phase : kNone;
+            phase_map.modulation.at(x, y) = good ? modulation : 0.0F;
+        }
+    }
+}
+
 void PaperDecoder::Impl::decode_phase() noexcept {
+    if (one_image) {
+        take_phase();
+        return;
+    }
     const std::span<const int> edges = shown.row_edges(size.height);
     for (std::size_t n = 0; n + 1 < edges.size(); ++n) {
         decode_phase_rows(edges[n], edges[n + 1]);

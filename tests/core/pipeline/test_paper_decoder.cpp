@@ -339,7 +339,12 @@ TEST(PaperDecoder, SaysWhatItCannotDo) {
     PatternSequence gray = gray_code_sequence(Axis::x, {1280, 768}, 32.0);
     std::erase_if(gray.patterns, [](const Pattern& p) { return p.kind == PatternKind::sine; });
     EXPECT_THAT(error_of(gray), HasSubstr("no sines"));
-    EXPECT_THAT(error_of(rgb_sequence(Axis::x, {1280, 768}, {96.0})), HasSubstr("rgb_sine"));
+    PatternSequence ramp = gray_code_sequence(Axis::x, {1280, 768}, 32.0);
+    ramp.patterns.resize(3);
+    ramp.patterns[2] = {};
+    ramp.patterns[2].kind = PatternKind::ramp;
+    ramp.patterns[2].period_px = 1280.0;
+    EXPECT_THAT(error_of(ramp), HasSubstr("ramps jump"));
     Rig rig = test::StepScene::rig();
     rig.projector->size = {800, 600};
     EXPECT_THAT(error_of(fringes(), &rig), HasSubstr("projector_size"));
