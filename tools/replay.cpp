@@ -29,9 +29,14 @@ void add_replay(CLI::App& app, int& exit_status) {
             exit_status = usage(set.error());
             return;
         }
+        choose_mode(*stream, options);
         auto session = Session::open(*folder, options);
         if (!session) {
             exit_status = fail(session.error());
+            return;
+        }
+        if (const auto possible = check_metric(*session, *stream); !possible) {
+            exit_status = usage(possible.error());
             return;
         }
         const auto recording = RecordingReader::open(*folder);

@@ -92,8 +92,13 @@ void add_run(CLI::App& app, int& exit_status) {
             exit_status = usage(set.error());
             return;
         }
+        choose_mode(run->stream, options);
         auto session = open(*run, options);
         if (session) {
+            if (const auto possible = check_metric(*session, run->stream); !possible) {
+                exit_status = usage(possible.error());
+                return;
+            }
             exit_status = play(*session, run->stream, options.pace, !is_simulator(run->source));
         } else {
             exit_status = session.error().code == ErrorCode::invalid_argument

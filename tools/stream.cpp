@@ -70,7 +70,7 @@ class StopOnInterrupt {
 void add_stream_options(CLI::App& command, StreamOptions& options) {
     command.add_option("--gestures", options.gestures,
                        "Comma-separated list of what is recognised: " + known_gestures() +
-                           " (default: all but wave; without a rig: all but pinch)");
+                           " (default: all but wave; without rig.yaml never pinch)");
     command
         .add_option_function<std::string>(
             "--events", [&options](const std::string& name) { options.events = format_of(name); },
@@ -87,6 +87,15 @@ void add_stream_options(CLI::App& command, StreamOptions& options) {
     add_settings_option(command, options.changes);
     command.add_flag("--stats", options.statistics,
                      "At the end, print the time of every stage on stderr");
+    command
+        .add_option_function<std::string>(
+            "--mode",
+            [&options](const std::string& name) {
+                options.mode = name == "burst" ? CaptureMode::burst : CaptureMode::sliding;
+            },
+            "Unwrap fringes in space, as recordings without rig.yaml always are: default (every "
+            "image, with those before it) or burst (whole sets of new images)")
+        ->check(CLI::IsMember({"default", "burst"}));
     command.add_flag("--json", options.json, "Events as jsonl, and --stats as JSON");
 }
 
@@ -115,6 +124,24 @@ Result<void> choose_gestures(const std::optional<std::string>& list, GestureSett
     return {};
 }
 
+void choose_mode(const StreamOptions& stream, SessionOptions& options) {
+    if (stream.mode) {
+        options.method = DecodeMethod::paper;
+        options.paper.mode = *stream.mode;
+    }
+}
+
+Result<void> check_metric(const Session& session, const StreamOptions& options) {
+    const bool pinch =
+        options.gestures && (',' + *options.gestures + ',').find(",pinch,") != std::string::npos;
+    if (!session.metric() && pinch) {
+        return Error{ErrorCode::unsupported,
+                     "--gestures pinch: needs millimetres, and the source has no rig.yaml; add the "
+                     "calibration, or choose from swipe, push, wave"};
+    }
+    return {};
+}
+
 int play(Session& session, const StreamOptions& options, Pace pace, bool whole, std::size_t items) {
     const EventFormat format =
         options.json && options.events == EventFormat::text ? EventFormat::jsonl : options.events;
@@ -132,6 +159,11 @@ int play(Session& session, const StreamOptions& options, Pace pace, bool whole, 
             }
             std::fflush(stdout);
         });
+    }
+    if (!session.metric()) {
+        print_error(
+            "xtrack: no rig.yaml: depth is relative; lengths are in eightieths of a palm's "
+            "width, not in mm, and pinches are not looked for\n");
     }
     // A bar between lines of events on the same screen would help nobody.
     std::optional<Progress> progress;

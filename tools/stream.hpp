@@ -22,6 +22,7 @@ struct StreamOptions {
     std::vector<std::string> changes;  ///< of the decoder's settings, NAME=VALUE
     bool statistics = false;
     bool json = false;
+    std::optional<CaptureMode> mode;  ///< wanted: fringes are unwrapped in space
 };
 
 void add_stream_options(CLI::App& command, StreamOptions& options);
@@ -30,6 +31,13 @@ void add_stream_options(CLI::App& command, StreamOptions& options);
 /// @errors invalid_argument: names the one that is not known, and those that are
 [[nodiscard]] Result<void> choose_gestures(const std::optional<std::string>& list,
                                            GestureSettings& settings);
+
+/// The choice of `--mode`, if one was made.
+void choose_mode(const StreamOptions& stream, SessionOptions& options);
+
+/// What a source without a calibration allows: nothing that compares what is smaller than a hand.
+/// @errors unsupported: such a gesture was asked for
+[[nodiscard]] Result<void> check_metric(const Session& session, const StreamOptions& options);
 
 /// Runs a session to its end and prints. @param whole what is interrupted is not the whole answer:
 /// a recording's @param items how many the source holds, for a progress bar; 0 = not known

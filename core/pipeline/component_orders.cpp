@@ -33,6 +33,9 @@ constexpr float kBridgeFit = 0.12F;
 constexpr int kLeastBridges = 6;
 constexpr double kBridgeShare = 0.6;
 constexpr std::size_t kMostBridges = 8192;
+// What moves smears its shadow's border: so many images on end must say that a component lies
+// elsewhere than it did.
+constexpr int kDoubts = 12;
 // What a shadow may be measured from: scraps at the edges of things that move are of no surface.
 constexpr int kBridgeablePixels = 1500;
 
@@ -90,6 +93,8 @@ ComponentOrders::ComponentOrders(Size image, Axis axis, const Triangulation* geo
     orders_.reserve(most);
     ambiguous_.reserve(most);
     ambiguous_before_.reserve(most);
+    doubts_.reserve(most);
+    doubts_before_.reserve(most);
     if (!metric_) {
         return;
     }
@@ -115,6 +120,7 @@ ComponentOrders::ComponentOrders(Size image, Axis axis, const Triangulation* geo
 void ComponentOrders::forget() noexcept {
     orders_.clear();
     ambiguous_.clear();
+    doubts_.clear();
     standing_out_ = 0.0;
 }
 
@@ -227,6 +233,7 @@ void ComponentOrders::vote(const Input& input, const Sample& s) noexcept {
         (metric_ || std::fabs(before) > kStandsOut)) {
         const auto order = static_cast<int>(std::lround(before - s.value));
         before_.add(order);
+        doubt_ = std::max<int>(doubt_, doubts_before_[id - 1U]);
         if (ambiguous_before_[id - 1U] == 0) {
             sure_before_.add(order);
         }
@@ -280,6 +287,11 @@ void ComponentOrders::decide(std::size_t index) noexcept {
     }
     const int bridged = bridged_.best();
     const int before = before_.best();
+    const bool shadow = bridged_.of(bridged) >= kLeastBridges && is_possible(bridged) &&
+                        bridged_.of(bridged) >= kBridgeShare * (bridged_.total() + bridge_misses_);
+    const bool tracked = before_.of(before) >= kBeforeShare * samples && is_possible(before);
+    const bool doubted = shadow && tracked && bridged != before;
+    doubts_[index] = doubted && doubt_ < kDoubts ? static_cast<std::uint8_t>(doubt_ + 1) : 0;
     bool sure = false;
     int order = home_.best();
     if (metric_ && count <= 1) {
@@ -288,11 +300,10 @@ void ComponentOrders::decide(std::size_t index) noexcept {
         sure = count == 1;
     } else if (!metric_ && index == 0) {
         sure = true;  // what most of the image is, is the background
-    } else if (bridged_.of(bridged) >= kLeastBridges && is_possible(bridged) &&
-               bridged_.of(bridged) >= kBridgeShare * (bridged_.total() + bridge_misses_)) {
+    } else if (shadow && (!doubted || doubts_[index] == 0)) {
         order = bridged;
         sure = 2 * sure_bridged_.of(bridged) >= bridged_.of(bridged);
-    } else if (before_.of(before) >= kBeforeShare * samples && is_possible(before)) {
+    } else if (tracked) {
         order = before;
         sure = 2 * sure_before_.of(before) >= before_.of(before);
     } else if (index == 0) {
@@ -307,11 +318,14 @@ void ComponentOrders::decide(std::size_t index) noexcept {
 
 void ComponentOrders::choose(const Input& input) noexcept {
     ambiguous_before_.swap(ambiguous_);
+    doubts_before_.swap(doubts_);
+    doubts_.assign(input.components.size(), 0);
     orders_.assign(input.components.size(), 0);
     ambiguous_.assign(input.components.size(), 1);
     standing_out_ = 0.0;
     find_bridges(input);
     for (std::size_t i = 0; i < std::min(input.components.size(), kMostComponents); ++i) {
+        doubt_ = 0;
         sample(input, input.components[i]);
         for (const Sample& s : samples_) {
             vote(input, s);

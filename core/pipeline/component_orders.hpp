@@ -108,6 +108,9 @@ class ComponentOrders {
     bool far_is_low_ = true;
     std::vector<std::int32_t> orders_;
     std::vector<std::uint8_t> ambiguous_, ambiguous_before_;
+    /// In how many images on end shadows have said otherwise.
+    std::vector<std::uint8_t> doubts_, doubts_before_;
+    int doubt_ = 0;  ///< of the component at hand, a frame ago
     std::vector<Sample> samples_;
     std::vector<Bridge> bridges_;
     Votes home_, possible_, before_, sure_before_, bridged_, sure_bridged_;
