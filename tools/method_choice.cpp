@@ -33,14 +33,15 @@ MethodNeeds needs_of(const SimSettings& settings, const GestureSettings& gesture
     needs.colour = settings.camera.colour;
     needs.frame_hz = settings.camera.frame_hz;
     needs.hold_frames = settings.clocks.locked ? 1 : settings.clocks.hold_frames;
-    needs.metric = demands.metric;
+    // Swipes and pushes can do without mm, but are found far less surely: only on request.
+    needs.metric = true;
     needs.hand_mmps = demands.hand_mmps;
     return needs;
 }
 
 Result<MethodVerdict> show_method(const std::string& name, const GestureSettings& gestures,
                                   SimSettings& settings) {
-    const MethodNeeds needs = needs_of(settings, gestures);
+    MethodNeeds needs = needs_of(settings, gestures);
     MethodVerdict verdict;
     if (name == "auto") {
         auto chosen = choose_method(needs);
@@ -54,6 +55,7 @@ Result<MethodVerdict> show_method(const std::string& name, const GestureSettings
             return Error{ErrorCode::invalid_argument,
                          "--method " + name + ": not a method; choose from " + known_methods()};
         }
+        needs.metric = demands_of(gestures).metric;
         verdict = judge(*method, needs);
         if (!verdict.possible) {
             return Error{ErrorCode::unsupported,

@@ -26,7 +26,7 @@ struct MethodsOptions {
 void print_text(const MethodNeeds& needs, const Result<MethodVerdict>& chosen) {
     fmt::print("{} camera, {:g} images a second, each pattern held for {}\n",
                needs.colour ? "colour" : "grey", needs.frame_hz, needs.hold_frames);
-    fmt::print("a hand of {:.2f} m/s must be followed{}\n\n", needs.hand_mmps / 1000.0,
+    fmt::print("all of a hand of {:.2f} m/s must be seen{}\n\n", needs.hand_mmps / 1000.0,
                needs.metric ? ", in mm" : "");
     fmt::print("{:<11}{:>7}  {:<8}{:<9}{}\n", "method", "images", "changes", "depth", "here");
     for (const MethodInfo& one : methods()) {
@@ -90,7 +90,7 @@ void add_methods(CLI::App& app, int& exit_status) {
         }
         MethodNeeds needs = needs_of(*settings, gestures);
         needs.static_only = options->static_only;
-        needs.metric = needs.metric && !options->relative;
+        needs.metric = !options->relative;
         const auto chosen = choose_method(needs);
         options->json ? print_json(needs, chosen) : print_text(needs, chosen);
         exit_status = chosen ? 0 : 1;

@@ -303,7 +303,8 @@ void ColourPalette::refine() noexcept {
                 cells_.at(sx * kSampleStepPx / kCellPx, sy * kSampleStepPx / kCellPx);
             const std::size_t surface = surface_of(value);
             // What moved agrees only about; it can wait until it rests.
-            if (is_moved(value) || light.sum() < kLeastLight || !(costs_[surface].at(sx, sy) < kSureCost)) {
+            if (is_moved(value) || light.sum() < kLeastLight ||
+                !(costs_[surface].at(sx, sy) < kSureCost)) {
                 continue;
             }
             Entry& entry = entries_[surface];
@@ -360,8 +361,8 @@ void ColourPalette::search() noexcept {
         const Evidence& evidence = smoothed_[next_search_];
         constexpr float kExplained = 0.08F;
         const std::uint8_t value = cells_.at(cx, cy);
-        const float least = is_moved(value) ? evidence.moved[surface_of(value)]
-                                            : evidence.cost[surface_of(value)];
+        const float least =
+            is_moved(value) ? evidence.moved[surface_of(value)] : evidence.cost[surface_of(value)];
         if (frames_ > 0 && least < kExplained * evidence.pixels) {
             continue;
         }

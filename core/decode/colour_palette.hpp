@@ -134,9 +134,9 @@ class ColourPalette {
     // Of all samples: fine and coarse light, the reference, coarse light of what moves.
     std::array<Image<float>, 10> planes_;
     float moved_px_ = 0.0F;
-    std::vector<float> moved_costs_;  // of a row
+    std::vector<float> moved_costs_;                 // of a row
     std::array<Image<float>, kMostSurfaces> costs_;  // of each surface in each sample
-    Image<std::uint8_t> cells_;  // surface, and kMoved
+    Image<std::uint8_t> cells_;                      // surface, and kMoved
     Image<std::uint8_t> surfaces_;
     std::vector<Evidence> evidence_;
     std::vector<Evidence> smoothed_;

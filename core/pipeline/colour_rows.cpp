@@ -211,8 +211,7 @@ void DepthDecoder::Impl::colours_of_row(int y) noexcept {
     for (int begin = 0; begin < size.width;) {
         int end = begin + 1;
         const std::size_t surface = ColourPalette::surface_of(surfaces[begin / kFine]);
-        while (end < size.width &&
-               ColourPalette::surface_of(surfaces[end / kFine]) == surface) {
+        while (end < size.width && ColourPalette::surface_of(surfaces[end / kFine]) == surface) {
             ++end;
         }
         const ColourModel::Taps& taps = palette->taps(surface);

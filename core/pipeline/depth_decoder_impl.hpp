@@ -66,8 +66,7 @@ struct DepthDecoder::Impl {
     void choose_surfaces() noexcept;
     void draw_borders() noexcept;
     [[nodiscard]] ColourRow colour_row(int y) const noexcept;
-    void sample_colours(const ColourRow& row, int x, std::size_t at,
-                        const ColourSamplesOut& out,
+    void sample_colours(const ColourRow& row, int x, std::size_t at, const ColourSamplesOut& out,
                         const std::array<float*, 3>& moved) const noexcept;
     [[nodiscard]] bool moves() const noexcept;
     [[nodiscard]] float coarse_drift_px() const noexcept;

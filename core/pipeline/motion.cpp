@@ -110,8 +110,7 @@ void MotionEstimator::shrink(const Frame& frame, Image<std::uint8_t>& cells) con
             unsigned sum = 0;
             unsigned count = 0;
             for (int j = 0; j < kCellPx && cy * kCellPx + j < size_.height; j += 2) {
-                const std::uint8_t* p =
-                    frame.pixels.row(cy * kCellPx + j) + cx * kCellPx * pixel;
+                const std::uint8_t* p = frame.pixels.row(cy * kCellPx + j) + cx * kCellPx * pixel;
                 const int columns = std::min(kCellPx, size_.width - cx * kCellPx);
                 for (int i = 0; i < columns; ++i) {
                     sum += grey ? p[i] : static_cast<unsigned>(motion::mean_of(p + i * pixel));

@@ -163,11 +163,11 @@ Result<PaperDecoder> PaperDecoder::create(const PatternSequence& patterns, Size 
         if (!unwrapper) {
             return unwrapper.error();
         }
-        auto impl = std::make_unique<Impl>(*std::move(plan), image, settings,
-                                           *std::move(unwrapper), std::move(geometry),
+        auto impl = std::make_unique<Impl>(*std::move(plan), image, settings, *std::move(unwrapper),
+                                           std::move(geometry),
                                            rig != nullptr ? rig->camera : nominal_camera(image));
-        impl->carrier_falls = impl->geometry && impl->plan.carrier() &&
-                              falls(*impl->geometry, patterns.axis, image);
+        impl->carrier_falls =
+            impl->geometry && impl->plan.carrier() && falls(*impl->geometry, patterns.axis, image);
         impl->one_image = std::move(one_image);
         return PaperDecoder(std::move(impl));
     });

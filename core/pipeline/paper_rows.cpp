@@ -79,8 +79,7 @@ void PaperDecoder::Impl::take_phase() noexcept {
             const bool good = modulation >= least;
             float phase = seen.phase_rad.at(x, y);
             if (carrier_falls) {
-                phase = std::remainder(-phase - 2.0F * pattern_rad,
-                                       static_cast<float>(kTurn_rad));
+                phase = std::remainder(-phase - 2.0F * pattern_rad, static_cast<float>(kTurn_rad));
             }
             phase_map.phase_rad.at(x, y) = good ? phase : kNone;
             phase_map.modulation.at(x, y) = good ? modulation : 0.0F;

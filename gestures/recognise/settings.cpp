@@ -91,6 +91,10 @@ Error refuse(const std::string& what) {
 
 }  // namespace
 
+// A gesture needs less than all of the hand: measured, those that are made at twice the speed at
+// which the whole hand is seen are still found.
+constexpr double kShareOfSpeed = 0.5;
+
 GestureDemands demands_of(const GestureSettings& settings) noexcept {
     GestureDemands demands;
     if (settings.swipe) {
@@ -104,6 +108,7 @@ GestureDemands demands_of(const GestureSettings& settings) noexcept {
         demands.hand_mmps = std::max(demands.hand_mmps, settings.pinch_palm_mmps);
         demands.metric = true;
     }
+    demands.hand_mmps *= kShareOfSpeed;
     return demands;
 }
 

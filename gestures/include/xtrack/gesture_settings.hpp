@@ -143,9 +143,10 @@ struct GestureSettings {
 /// What enabled gestures ask of the depth images they are seen in.
 /// @since 0.1
 struct GestureDemands {
-    double hand_mmps = 0.0;  ///< the slowest movement that is a gesture must be followed; the
-                             ///< fastest such threshold of all
-    bool metric = false;     ///< lengths in mm decide: relative depth will not do
+    /// At which all of the hand must be seen: half the speed from which on a movement is a gesture,
+    /// of the fastest one.
+    double hand_mmps = 0.0;
+    bool metric = false;  ///< lengths in mm decide: relative depth will not do
 };
 
 /// @thread any

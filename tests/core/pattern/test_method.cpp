@@ -69,7 +69,7 @@ MethodNeeds webcam() {
     needs.colour = true;
     needs.frame_hz = 30.0;
     needs.hold_frames = 2;
-    needs.hand_mmps = 370.0;
+    needs.hand_mmps = 185.0;
     return needs;
 }
 
@@ -78,7 +78,7 @@ TEST(Auto, TakesColourForAHandOnAWebcam) {
     ASSERT_TRUE(chosen) << chosen.error().message;
     EXPECT_EQ(chosen->method, Method::rgb);
     EXPECT_THAT(chosen->reason, HasSubstr("m/s"));
-    EXPECT_GE(chosen->hand_mmps, 370.0);
+    EXPECT_GE(chosen->hand_mmps, 185.0);
 }
 
 TEST(Auto, PrefersPatternsThatNeverChange) {
@@ -99,7 +99,7 @@ TEST(Auto, RefusesWithAWordWhatCannotCarryTheGestures) {
     EXPECT_THAT(rgb.reason, HasSubstr("colour camera"));
     const MethodVerdict grey = judge(Method::grey, needs);
     EXPECT_FALSE(grey.possible);
-    EXPECT_THAT(grey.reason, HasSubstr("0.37 m/s"));
+    EXPECT_THAT(grey.reason, HasSubstr("0.19 m/s"));
     EXPECT_THAT(judge(Method::dual, needs).reason, HasSubstr("at rest"));
     EXPECT_THAT(judge(Method::ftp, needs).reason, HasSubstr("relative"));
     const auto none = choose_method(needs);
