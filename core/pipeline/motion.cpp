@@ -63,9 +63,8 @@ MotionEstimator::MotionEstimator(Size image, int patterns, const Settings& setti
     for (Small& small : mean_cells_) {
         small.cells.resize(w, h);
     }
-    for (Image<float>* cells : {&turn_re_, &turn_im_, &turn_samples_, &cell_drift_rad_}) {
-        *cells = Image<float>(w, h, 0.0F);
-    }
+    turns_.resize(w, h);
+    cell_drift_rad_ = Image<float>(w, h, 0.0F);
     still_cost_.resize(w, h);
     follow_cost_.resize(w, h);
     row_disturbed_.resize(static_cast<std::size_t>(h), 0);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <array>
-#include <complex>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -131,10 +131,15 @@ class MotionEstimator {
 
     // How a cycle's images are laid on top of each other, and decoded.
     struct View {
-        std::array<Shift, kCycle> shift;
         TapSet taps;
-        std::complex<float> mean_turn;  // of e^{i phase}
-        bool usable = false;
+        float mean_re = 0.0F;  // of e^{i phase}
+        float mean_im = 0.0F;
+        // Of each image, what the newest frame's pixel (0, 0) shows, be it outside or not.
+        std::array<const std::uint8_t*, kCycle> origin{};
+        std::array<std::ptrdiff_t, kCycle> stride{};
+        std::array<int, kCycle> step{};
+        // Pixels that every image has.
+        int left = 0, right = 0, top = 0, bottom = 0;
     };
     struct Cycle {
         std::array<const Frame*, kCycle> frames{};  // by pattern; the window holds them
@@ -142,19 +147,25 @@ class MotionEstimator {
         std::array<View, 2> views;  // standing still, following
     };
     struct Fringe {
-        std::complex<float> wave;  // amplitude and phase
+        float re = 0.0F;  // amplitude and phase
+        float im = 0.0F;
         float mean = 0.0F;
+    };
+    // Sum of unit vectors: how far the phase turned.
+    struct Turn {
+        float re = 0.0F;
+        float im = 0.0F;
+        int samples = 0;
     };
     [[nodiscard]] bool find_cycles(const FrameWindow& window, const Frame& newest) noexcept;
     [[nodiscard]] static int mean_at(const Cycle& cycle, int x, int y) noexcept;
     void mean_cells(const Cycle& cycle, Image<std::uint8_t>& cells) const noexcept;
     void prepare_views() noexcept;
     /// False where a shifted image has no such pixel.
-    [[nodiscard]] bool look(const Cycle& cycle, bool follow, int x, int y,
-                            Fringe& out) const noexcept;
+    [[nodiscard]] static bool look(const Cycle& cycle, bool follow, int x, int y,
+                                   Fringe& out) noexcept;
     /// Adds the turn of the phase from now to before of a cell's samples that are of one point.
-    /// @return how many these are
-    int add_turns(int cell_x, int cell_y, bool follow, std::complex<float>& sum) const noexcept;
+    void add_turns(int cell_x, int cell_y, bool follow, int step_px, Turn& turn) const noexcept;
     /// Takes the drift that the move leaves. @return the mismatch of what moves, grey levels
     float measure_drift() noexcept;
     void take_move(const Shift& shift, double cycles_ago) noexcept;
@@ -175,7 +186,8 @@ class MotionEstimator {
     bool whole_cycles_ = false;    // cycles_ hold
     std::array<Cycle, 2> cycles_;  // newest, the one before
     std::array<Small, 2> mean_cells_;
-    Image<float> turn_re_, turn_im_, turn_samples_, cell_drift_rad_;
+    Image<Turn> turns_;
+    Image<float> cell_drift_rad_;
     float extra_rad_per_s_ = 0.0F;  // beyond the move along the image
     float lag_s_ = 0.0F;            // from when the velocity was what it is, to now
     Vec2f gradient_rad_ = Vec2f::Zero();

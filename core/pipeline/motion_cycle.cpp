@@ -6,7 +6,6 @@
 // how far it came along the axis or in depth.
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <numbers>
 #include <span>
 
@@ -17,10 +16,11 @@ namespace xtrack {
 namespace {
 
 using motion::grey_at;
-using motion::inside;
 using motion::kCostCap;
 
+// One sample in so many pixels each way: of a cell, of all that moves.
 constexpr int kSampleStepPx = 2;
+constexpr int kSparseStepPx = 4;
 // Samples whose mean changes by more are not of the same point, grey levels.
 constexpr float kSamePoint = 10.0F;
 // Fringe amplitude of a sample that has a say, grey levels.
@@ -31,7 +31,7 @@ constexpr int kLeastSamples = 60;
 constexpr int kNear = 3;
 // The same of a cell with its neighbours, and how much of their length the sum of their turns
 // keeps.
-constexpr float kLeastCellSamples = 8.0F;
+constexpr int kLeastCellSamples = 8;
 constexpr float kLeastAgreement = 0.8F;
 constexpr float kMostCellDrift_rad = 1.0F;
 // How often the drift is measured with taps that the last measurement corrected.
@@ -87,46 +87,54 @@ float MotionEstimator::drift_rad_since(const Frame& frame) const noexcept {
 }
 
 void MotionEstimator::prepare_views() noexcept {
-    for (std::size_t ago = 0; ago < 2; ++ago) {
-        Cycle& cycle = cycles_[ago];
+    for (Cycle& cycle : cycles_) {
         for (const bool follow : {false, true}) {
             View& view = cycle.views[follow ? 1 : 0];
+            view.left = 0;
+            view.right = size_.width;
+            view.top = 0;
+            view.bottom = size_.height;
+            view.mean_re = 0.0F;
+            view.mean_im = 0.0F;
             std::array<double, kCycle> phases{};
-            std::complex<double> turn;
             for (std::size_t p = 0; p < kCycle; ++p) {
                 const Frame& frame = *cycle.frames[p];
-                view.shift[p] = follow ? to(frame) : Shift{};
+                const Shift shift = follow ? to(frame) : Shift{};
+                const bool grey = frame.format == PixelFormat::grey8;
+                view.step[p] = grey ? 1 : 3;
+                view.stride[p] = frame.pixels.stride();
+                view.origin[p] = frame.pixels.row(0) + (grey ? 0 : 1) + shift.dy * view.stride[p] +
+                                 shift.dx * view.step[p];
+                view.left = std::max(view.left, -shift.dx);
+                view.right = std::min(view.right, size_.width - shift.dx);
+                view.top = std::max(view.top, -shift.dy);
+                view.bottom = std::min(view.bottom, size_.height - shift.dy);
                 phases[p] = settings_.phases_rad[p] +
                             (follow ? static_cast<double>(drift_rad_since(frame)) : 0.0);
-                turn += std::polar(1.0 / static_cast<double>(kCycle), phases[p]);
+                view.mean_re += static_cast<float>(std::cos(phases[p]) / kCycle);
+                view.mean_im += static_cast<float>(std::sin(phases[p]) / kCycle);
             }
-            view.usable = fit_taps(phases, view.taps);
-            view.mean_turn = std::complex<float>(turn);
+            if (!fit_taps(phases, view.taps)) {
+                view.right = view.left;  // nothing to see
+            }
         }
     }
 }
 
-bool MotionEstimator::look(const Cycle& cycle, bool follow, int x, int y,
-                           Fringe& out) const noexcept {
+bool MotionEstimator::look(const Cycle& cycle, bool follow, int x, int y, Fringe& out) noexcept {
     const View& view = cycle.views[follow ? 1 : 0];
-    float re = 0.0F;
-    float im = 0.0F;
-    float mean = 0.0F;
-    for (std::size_t p = 0; p < kCycle; ++p) {
-        const int at_x = x + view.shift[p].dx;
-        const int at_y = y + view.shift[p].dy;
-        if (!inside(at_x, at_y, size_)) {
-            return false;
-        }
-        const auto grey = static_cast<float>(grey_at(*cycle.frames[p], at_x, at_y));
-        re += view.taps.taps[p].re * grey;
-        im += view.taps.taps[p].im * grey;
-        mean += grey;
+    if (x < view.left || x >= view.right || y < view.top || y >= view.bottom) {
+        return false;
     }
-    out.wave = {re, im};
-    out.mean = mean / static_cast<float>(kCycle) -
-               (re * view.mean_turn.real() - im * view.mean_turn.imag());
-    return view.usable;
+    out = {};
+    for (std::size_t p = 0; p < kCycle; ++p) {
+        const auto grey = static_cast<float>(view.origin[p][y * view.stride[p] + x * view.step[p]]);
+        out.re += view.taps.taps[p].re * grey;
+        out.im += view.taps.taps[p].im * grey;
+        out.mean += grey / static_cast<float>(kCycle);
+    }
+    out.mean -= out.re * view.mean_re - out.im * view.mean_im;
+    return true;
 }
 
 float MotionEstimator::mismatch(int x, int y, bool follow) const noexcept {
@@ -138,56 +146,58 @@ float MotionEstimator::mismatch(int x, int y, bool follow) const noexcept {
     if (!look(cycles_[0], follow, x, y, now) || !look(cycles_[1], follow, x, y, before)) {
         return kNoMatch;
     }
-    return std::max(std::abs(now.wave - before.wave), std::abs(now.mean - before.mean));
+    const float re = now.re - before.re;
+    const float im = now.im - before.im;
+    return std::max(std::sqrt(re * re + im * im), std::abs(now.mean - before.mean));
 }
 
-int MotionEstimator::add_turns(int cell_x, int cell_y, bool follow,
-                               std::complex<float>& sum) const noexcept {
-    int samples = 0;
-    for (int j = 0; j < kCellPx; j += kSampleStepPx) {
-        for (int i = 0; i < kCellPx; i += kSampleStepPx) {
+void MotionEstimator::add_turns(int cell_x, int cell_y, bool follow, int step_px,
+                                Turn& turn) const noexcept {
+    constexpr float kLeastPower = kLeastAmplitude * kLeastAmplitude;
+    for (int j = 0; j < kCellPx; j += step_px) {
+        for (int i = 0; i < kCellPx; i += step_px) {
             const int x = cell_x * kCellPx + i;
             const int y = cell_y * kCellPx + j;
             Fringe now;
             Fringe before;
-            if (!inside(x, y, size_) || !look(cycles_[0], follow, x, y, now) ||
-                !look(cycles_[1], follow, x, y, before) ||
+            if (!look(cycles_[0], follow, x, y, now) || !look(cycles_[1], follow, x, y, before) ||
                 std::abs(now.mean - before.mean) > kSamePoint) {
                 continue;
             }
-            const float now_levels = std::abs(now.wave);
-            const float before_levels = std::abs(before.wave);
-            if (now_levels < kLeastAmplitude || before_levels < kLeastAmplitude) {
+            const float now_power = now.re * now.re + now.im * now.im;
+            const float before_power = before.re * before.re + before.im * before.im;
+            if (now_power < kLeastPower || before_power < kLeastPower) {
                 continue;
             }
-            sum += before.wave * std::conj(now.wave) / (before_levels * now_levels);
-            ++samples;
+            // before * conj(now), of length 1
+            const float scale = 1.0F / std::sqrt(now_power * before_power);
+            turn.re += scale * (before.re * now.re + before.im * now.im);
+            turn.im += scale * (before.im * now.re - before.re * now.im);
+            ++turn.samples;
         }
     }
-    return samples;
 }
 
 // The phase that the fringes moved by in a cycle, beyond what the move along the image explains.
 float MotionEstimator::measure_drift() noexcept {
     for (int round = 0; round < kRounds; ++round) {
         prepare_views();
-        std::complex<float> sum;
-        int samples = 0;
+        Turn turn;
         for (const auto& cell : active_cells_) {
-            samples += add_turns(cell[0], cell[1], true, sum);
+            add_turns(cell[0], cell[1], true, kSparseStepPx, turn);
         }
-        if (samples < kLeastSamples) {
+        if (turn.samples < kLeastSamples) {
             break;
         }
-        extra_rad_per_s_ += std::arg(sum) / static_cast<float>(seconds_per_cycle_);
+        extra_rad_per_s_ += std::atan2(turn.im, turn.re) / static_cast<float>(seconds_per_cycle_);
         const auto most = static_cast<float>(std::numbers::pi / seconds_per_cycle_);
         extra_rad_per_s_ = std::clamp(extra_rad_per_s_, -most, most);
     }
     prepare_views();
     float cost = 0.0F;
     for (const auto& cell : active_cells_) {
-        for (int j = 0; j < kCellPx; j += kSampleStepPx) {
-            for (int i = 0; i < kCellPx; i += kSampleStepPx) {
+        for (int j = 0; j < kCellPx; j += kSparseStepPx) {
+            for (int i = 0; i < kCellPx; i += kSparseStepPx) {
                 cost += std::min(mismatch(cell[0] * kCellPx + i, cell[1] * kCellPx + j, true),
                                  static_cast<float>(kCostCap));
             }
@@ -214,11 +224,11 @@ void MotionEstimator::choose_move(const Shift& by_pattern) noexcept {
 void MotionEstimator::measure_cell_drift() noexcept {
     for (int cy = 0; cy < age_.height(); ++cy) {
         for (int cx = 0; cx < age_.width(); ++cx) {
-            std::complex<float> turn;
-            const int samples = disturbed(cx, cy) ? add_turns(cx, cy, follows(cx, cy), turn) : 0;
-            turn_re_.at(cx, cy) = turn.real();
-            turn_im_.at(cx, cy) = turn.imag();
-            turn_samples_.at(cx, cy) = static_cast<float>(samples);
+            Turn& turn = turns_.at(cx, cy);
+            turn = {};
+            if (disturbed(cx, cy)) {
+                add_turns(cx, cy, follows(cx, cy), kSampleStepPx, turn);
+            }
         }
     }
     for (int cy = 0; cy < age_.height(); ++cy) {
@@ -228,21 +238,24 @@ void MotionEstimator::measure_cell_drift() noexcept {
             if (!disturbed(cx, cy)) {
                 continue;
             }
-            std::complex<float> turn;
-            float samples = 0.0F;
+            Turn sum;
             for (int y = std::max(cy - kNear, 0); y <= std::min(cy + kNear, age_.height() - 1);
                  ++y) {
                 for (int x = std::max(cx - kNear, 0); x <= std::min(cx + kNear, age_.width() - 1);
                      ++x) {
                     if (follows(x, y) == follows(cx, cy)) {
-                        turn += std::complex<float>(turn_re_.at(x, y), turn_im_.at(x, y));
-                        samples += turn_samples_.at(x, y);
+                        sum.re += turns_.at(x, y).re;
+                        sum.im += turns_.at(x, y).im;
+                        sum.samples += turns_.at(x, y).samples;
                     }
                 }
             }
             // Samples that disagree are of several surfaces: none of their phases is right.
-            if (samples >= kLeastCellSamples && std::abs(turn) >= kLeastAgreement * samples) {
-                drift_rad = std::clamp(std::arg(turn), -kMostCellDrift_rad, kMostCellDrift_rad);
+            const float agreement = std::sqrt(sum.re * sum.re + sum.im * sum.im);
+            if (sum.samples >= kLeastCellSamples &&
+                agreement >= kLeastAgreement * static_cast<float>(sum.samples)) {
+                drift_rad =
+                    std::clamp(std::atan2(sum.im, sum.re), -kMostCellDrift_rad, kMostCellDrift_rad);
             }
         }
     }

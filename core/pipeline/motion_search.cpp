@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 
@@ -17,6 +18,8 @@ using motion::saw_cells;
 // A match that is farther from the one expected must be better by this much a cell, grey levels:
 // fine fringes match themselves a period away.
 constexpr float kExpectedAdvantage = 0.3F;
+// Cells that are enough to tell where the others went, spread over all of them.
+constexpr std::size_t kEnoughCells = 256;
 
 }  // namespace
 
@@ -30,67 +33,78 @@ Shift MotionEstimator::search_cells(const Small& now, const Small& before,
                                            .cwiseMax(-farthest)
                                            .cwiseMin(farthest))
                                : Vec2f(Vec2f::Zero());
-    Shift best;
-    int best_cost = std::numeric_limits<int>::max();
+    const std::size_t every = 1 + active_cells_.size() / kEnoughCells;
+    const auto looked_at = static_cast<float>(active_cells_.size() / every);
+    // Stops once it is no better than `limit`.
+    const auto cost_of = [&](int dx, int dy, int limit) {
+        const Vec2f candidate(static_cast<float>(dx * kCellPx), static_cast<float>(dy * kCellPx));
+        int cost = history_count_ == 0
+                       ? 0
+                       : static_cast<int>((candidate - expected).norm() *
+                                          (kExpectedAdvantage / kCellPx) * looked_at);
+        for (std::size_t n = 0; n < active_cells_.size() && cost < limit; n += every) {
+            const auto& cell = active_cells_[n];
+            const int x = cell[0] + dx;
+            const int y = cell[1] + dy;
+            const int difference =
+                inside(x, y, before.cells.size()) && saw_cells(*before.frame, y, size_.height)
+                    ? std::abs(now.cells.at(cell[0], cell[1]) - before.cells.at(x, y))
+                    : kCostCap;
+            cost += std::min(difference, kCostCap);
+        }
+        return cost;
+    };
+    // What is likely comes first: the rest is then soon given up.
+    const auto cell_of = [&](float px) {
+        return std::clamp(static_cast<int>(std::lround(px / kCellPx)), -reach, reach);
+    };
+    Shift best{cell_of(expected.x()), cell_of(expected.y())};
+    int best_cost = cost_of(best.dx, best.dy, std::numeric_limits<int>::max());
     for (int dy = -reach; dy <= reach; ++dy) {
         for (int dx = -reach; dx <= reach; ++dx) {
-            const Vec2f candidate(static_cast<float>(dx * kCellPx),
-                                  static_cast<float>(dy * kCellPx));
-            int cost = history_count_ == 0
-                           ? 0
-                           : static_cast<int>((candidate - expected).norm() *
-                                              (kExpectedAdvantage / kCellPx) *
-                                              static_cast<float>(active_cells_.size()));
-            for (const auto& cell : active_cells_) {
-                const int x = cell[0] + dx;
-                const int y = cell[1] + dy;
-                const int difference =
-                    inside(x, y, before.cells.size()) && saw_cells(*before.frame, y, size_.height)
-                        ? std::abs(now.cells.at(cell[0], cell[1]) - before.cells.at(x, y))
-                        : kCostCap;
-                cost += std::min(difference, kCostCap);
-                if (cost >= best_cost) {
-                    break;
-                }
-            }
+            const int cost = cost_of(dx, dy, best_cost);
             if (cost < best_cost) {
                 best_cost = cost;
-                best = {dx * kCellPx, dy * kCellPx};
+                best = {dx, dy};
             }
         }
     }
-    return best;
+    return {best.dx * kCellPx, best.dy * kCellPx};
 }
 
 template <class Now, class Before, class Saw>
 Shift MotionEstimator::search_pixels(const Now& now, const Before& before, const Saw& saw_row,
                                      Shift around, int radius, int step) const noexcept {
+    const auto cost_of = [&](int dx, int dy, int limit) {
+        int cost = 0;
+        for (const auto& cell : active_cells_) {
+            // Four spread pixels stand for the cell.
+            constexpr int kNear = kCellPx / 4;
+            constexpr int kFar = kCellPx - kNear;
+            constexpr int kSamples[4][2] = {
+                {kNear, kNear}, {kFar, kNear}, {kNear, kFar}, {kFar, kFar}};
+            for (const auto& sample : kSamples) {
+                const int x = cell[0] * kCellPx + sample[0];
+                const int y = cell[1] * kCellPx + sample[1];
+                if (!inside(x, y, size_)) {
+                    continue;
+                }
+                const int difference = inside(x + dx, y + dy, size_) && saw_row(y + dy)
+                                           ? std::abs(now(x, y) - before(x + dx, y + dy))
+                                           : kCostCap;
+                cost += std::min(difference, kCostCap);
+            }
+            if (cost >= limit) {
+                break;
+            }
+        }
+        return cost;
+    };
     Shift best = around;
-    int best_cost = std::numeric_limits<int>::max();
+    int best_cost = cost_of(around.dx, around.dy, std::numeric_limits<int>::max());
     for (int dy = around.dy - radius; dy <= around.dy + radius; dy += step) {
         for (int dx = around.dx - radius; dx <= around.dx + radius; dx += step) {
-            int cost = 0;
-            for (const auto& cell : active_cells_) {
-                // Four spread pixels stand for the cell.
-                constexpr int kNear = kCellPx / 4;
-                constexpr int kFar = kCellPx - kNear;
-                constexpr int kSamples[4][2] = {
-                    {kNear, kNear}, {kFar, kNear}, {kNear, kFar}, {kFar, kFar}};
-                for (const auto& sample : kSamples) {
-                    const int x = cell[0] * kCellPx + sample[0];
-                    const int y = cell[1] * kCellPx + sample[1];
-                    if (!inside(x, y, size_)) {
-                        continue;
-                    }
-                    const int difference = inside(x + dx, y + dy, size_) && saw_row(y + dy)
-                                               ? std::abs(now(x, y) - before(x + dx, y + dy))
-                                               : kCostCap;
-                    cost += std::min(difference, kCostCap);
-                }
-                if (cost >= best_cost) {
-                    break;
-                }
-            }
+            const int cost = cost_of(dx, dy, best_cost);
             if (cost < best_cost) {
                 best_cost = cost;
                 best = {dx, dy};
