@@ -18,32 +18,37 @@ namespace {
 using D = hn::ScalableTag<float>;
 using V = hn::Vec<D>;
 
-struct Seen {
-    V contrast;
-    V coordinate_px;
-    hn::Mask<D> possible;
-};
-
-HWY_INLINE Seen see(const ColourModel::Inverse& inverse, const std::array<const float*, 3>& light,
-                    const ColourPeriod& period, int at) {
+// Vectors of SVE have no size that a compiler knows: none in arrays or structs.
+HWY_INLINE V see(const ColourModel::Inverse& inverse, int row, V red, V green, V blue) {
     const D d;
-    const V value[3] = {hn::LoadU(d, light[0] + at), hn::LoadU(d, light[1] + at),
-                        hn::LoadU(d, light[2] + at)};
-    V out[3];
-    for (int row = 0; row < 3; ++row) {
-        V sum = hn::Mul(hn::Set(d, inverse(row, 0)), value[0]);
-        sum = hn::MulAdd(hn::Set(d, inverse(row, 1)), value[1], sum);
-        out[row] = hn::MulAdd(hn::Set(d, inverse(row, 2)), value[2], sum);
-    }
+    const V part =
+        hn::MulAdd(hn::Set(d, inverse(row, 1)), green, hn::Mul(hn::Set(d, inverse(row, 0)), red));
+    return hn::MulAdd(hn::Set(d, inverse(row, 2)), blue, part);
+}
+
+/// @return the light; contrast and the coordinate within one period by the way
+HWY_INLINE V see(const ColourModel::Inverse& inverse, const std::array<const float*, 3>& light,
+                 const ColourPeriod& period, int at, V& contrast, V& coordinate_px) {
+    const D d;
+    const V red = hn::LoadU(d, light[0] + at);
+    const V green = hn::LoadU(d, light[1] + at);
+    const V blue = hn::LoadU(d, light[2] + at);
+    const V whole = see(inverse, 0, red, green, blue);
+    const V re = see(inverse, 1, red, green, blue);
+    const V im = see(inverse, 2, red, green, blue);
     constexpr float kTurn = 2.0F * std::numbers::pi_v<float>;
-    const V power = hn::MulAdd(out[1], out[1], hn::Mul(out[2], out[2]));
-    const V contrast = hn::Div(hn::Sqrt(power), out[0]);
-    const V angle = arctangent2(d, out[2], out[1]);
+    const V power = hn::MulAdd(re, re, hn::Mul(im, im));
+    contrast = hn::Div(hn::Sqrt(power), whole);
+    const V angle = arctangent2(d, im, re);
     const V from = hn::Sub(angle, hn::Set(d, static_cast<float>(period.phase_rad)));
-    const V x = hn::Mul(from, hn::Set(d, static_cast<float>(period.period_px) / kTurn));
-    const auto possible = hn::And(hn::Gt(out[0], hn::Zero(d)),
-                                  hn::Le(contrast, hn::Set(d, colour_cost_weights::kMostContrast)));
-    return {contrast, x, possible};
+    coordinate_px = hn::Mul(from, hn::Set(d, static_cast<float>(period.period_px) / kTurn));
+    return whole;
+}
+
+HWY_INLINE hn::Mask<D> possible_at(V light, V contrast) {
+    const D d;
+    return hn::And(hn::Gt(light, hn::Zero(d)),
+                   hn::Le(contrast, hn::Set(d, colour_cost_weights::kMostContrast)));
 }
 
 HWY_INLINE V nearest_whole(V value) { return hn::Floor(hn::Add(value, hn::Set(D(), 0.5F))); }
@@ -62,23 +67,25 @@ void measure(const ColourCost& row) {
     for (int i = 0; i < row.count; i += lanes) {
         // The last vector overlaps the one before it instead of running over the end.
         const int at = i + lanes <= row.count ? i : row.count - lanes;
-        const Seen fine = see(row.inverse, row.samples.fine, row.fine, at);
-        auto possible = fine.possible;
+        V fine_contrast = hn::Zero(d);
+        V fine_px = hn::Zero(d);
+        const V fine_light =
+            see(row.inverse, row.samples.fine, row.fine, at, fine_contrast, fine_px);
+        auto possible = possible_at(fine_light, fine_contrast);
         V contrast = hn::Set(d, row.contrast);
         V reference = hn::LoadU(d, row.samples.reference_px + at);
         if (row.has_coarse) {
-            const Seen coarse = see(row.inverse, row.samples.coarse, row.coarse, at);
-            contrast = coarse.contrast;
-            possible = hn::And(possible, coarse.possible);
-            const V x = coarse.coordinate_px;
+            V x = hn::Zero(d);
+            const V light = see(row.inverse, row.samples.coarse, row.coarse, at, contrast, x);
+            possible = hn::And(possible, possible_at(light, contrast));
             const V turns = nearest_whole(hn::Div(hn::Sub(reference, x), coarse_period));
             const V unwrapped = hn::MulAdd(coarse_period, turns, x);
             reference = hn::IfThenElse(hn::Eq(reference, reference), unwrapped, x);
         }
-        V apart = hn::Div(hn::Sub(fine.coordinate_px, reference), fine_period);
+        V apart = hn::Div(hn::Sub(fine_px, reference), fine_period);
         apart = hn::Sub(apart, nearest_whole(apart));
         apart = hn::IfThenElseZero(hn::Eq(reference, reference), apart);
-        const V between = hn::Sub(fine.contrast, contrast);
+        const V between = hn::Sub(fine_contrast, contrast);
         const V apart_cost =
             hn::Mul(hn::Set(d, colour_cost_weights::kApart), hn::Mul(apart, apart));
         const V cost = hn::MulAdd(hn::Set(d, colour_cost_weights::kContrast),

@@ -46,14 +46,18 @@ void decode(const RgbRow& row) {
             V8 red;
             hn::LoadInterleaved3(D8(), row.bgr[n] + 3 * static_cast<std::ptrdiff_t>(at), blue,
                                  green, red);
-            const V value[3] = {widened(blue), widened(green), widened(red)};
-            brightest = hn::Max(hn::Max(brightest, value[0]), hn::Max(value[1], value[2]));
-            V frame_re = hn::Zero(d);
-            V frame_im = hn::Zero(d);
-            for (std::size_t c = 0; c < 3; ++c) {
-                frame_re = hn::MulAdd(hn::LoadU(d, row.re[c] + at), value[c], frame_re);
-                frame_im = hn::MulAdd(hn::LoadU(d, row.im[c] + at), value[c], frame_im);
-            }
+            // No array of vectors: those of SVE have no size that a compiler knows.
+            const V b = widened(blue);
+            const V g = widened(green);
+            const V r = widened(red);
+            brightest = hn::Max(hn::Max(brightest, b), hn::Max(g, r));
+            const auto sum = [&](const std::array<const float*, 3>& taps) {
+                const V part = hn::MulAdd(hn::LoadU(d, taps[1] + at), g,
+                                          hn::Mul(hn::LoadU(d, taps[0] + at), b));
+                return hn::MulAdd(hn::LoadU(d, taps[2] + at), r, part);
+            };
+            const V frame_re = sum(row.re);
+            const V frame_im = sum(row.im);
             const V turn_re = hn::Set(d, row.turn[n].real());
             const V turn_im = hn::Set(d, row.turn[n].imag());
             re = hn::NegMulAdd(turn_im, frame_im, hn::MulAdd(turn_re, frame_re, re));

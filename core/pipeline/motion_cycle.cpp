@@ -20,7 +20,7 @@ using motion::kCostCap;
 
 // One sample in so many pixels each way: of a cell, of all that moves.
 constexpr int kSampleStepPx = 2;
-constexpr int kSparseStepPx = 4;
+constexpr int kSparseStepPx = 2;
 // Samples whose mean changes by more are not of the same point, grey levels.
 constexpr float kSamePoint = 10.0F;
 // Fringe amplitude of a sample that has a say, grey levels.

@@ -34,7 +34,8 @@ Shift MotionEstimator::search_cells(const Small& now, const Small& before,
                                            .cwiseMin(farthest))
                                : Vec2f(Vec2f::Zero());
     const std::size_t every = 1 + active_cells_.size() / kEnoughCells;
-    const auto looked_at = static_cast<float>(active_cells_.size() / every);
+    const std::size_t cells = active_cells_.size() / every;
+    const auto looked_at = static_cast<float>(cells);
     // Stops once it is no better than `limit`.
     const auto cost_of = [&](int dx, int dy, int limit) {
         const Vec2f candidate(static_cast<float>(dx * kCellPx), static_cast<float>(dy * kCellPx));
