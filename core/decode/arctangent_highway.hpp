@@ -38,7 +38,8 @@ HWY_INLINE V arctangent2(D d, V y, V x) {
                            hn::Sub(hn::Set(d, std::numbers::pi_v<float> / 2.0F), angle), angle);
     angle = hn::IfThenElse(hn::Lt(x, hn::Zero(d)),
                            hn::Sub(hn::Set(d, std::numbers::pi_v<float>), angle), angle);
-    return hn::IfThenElse(hn::Lt(y, hn::Zero(d)), hn::Neg(angle), angle);
+    // The angle has no sign yet.
+    return hn::Or(angle, hn::And(y, hn::SignBit(d)));
 }
 
 }  // namespace xtrack::HWY_NAMESPACE

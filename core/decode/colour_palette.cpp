@@ -78,7 +78,7 @@ ColourPalette::ColourPalette(Size image, const ColourModel& model, const ColourP
     for (Image<float>& plane : planes_) {
         plane.resize(samples_.width, samples_.height);
     }
-    moved_costs_.resize(static_cast<std::size_t>(samples_.width));
+    moved_costs_.resize(samples_.width, cells_.height());
     for (Image<float>& cost : costs_) {
         cost.resize(samples_.width, samples_.height);
     }
@@ -166,6 +166,7 @@ void ColourPalette::add_row(int y) noexcept {
     const ColourSamples samples = row_samples(sy);
     Evidence* cells = evidence_.data() + static_cast<std::size_t>(y / kCellPx) *
                                              static_cast<std::size_t>(cells_.width());
+    float* moved_costs = moved_costs_.row(y / kCellPx);
     ColourSamples moved = samples;
     for (std::size_t c = 0; c < 3; ++c) {
         moved.coarse[c] = planes_[7 + c].row(sy);
@@ -182,14 +183,13 @@ void ColourPalette::add_row(int y) noexcept {
         float* costs = costs_[k].row(sy);
         measure(entries_[k], samples, 0.0F, samples_.width, costs);
         if (moves) {
-            measure(entries_[k], moved, moved_px_, samples_.width, moved_costs_.data());
+            measure(entries_[k], moved, moved_px_, samples_.width, moved_costs);
         }
         for (int i = 0; i < samples_.width; ++i) {
             if (lit(i)) {
                 Evidence& cell = cells[i * kSampleStepPx / kCellPx];
                 cell.cost[k] += costs[i];
-                cell.moved[k] +=
-                    moves ? moved_costs_[static_cast<std::size_t>(i)] : kMostColourCost;
+                cell.moved[k] += moves ? moved_costs[i] : kMostColourCost;
             }
         }
     }

@@ -28,7 +28,7 @@ namespace xtrack {
 ///
 /// A frame: begin(), add_row() for every kSampleStep-th row, choose(), then surface_at() and taps()
 /// are of this frame; learn() last.
-/// @thread one at a time; no allocation after create()
+/// @thread one at a time but where said; no allocation after create()
 class ColourPalette {
  public:
     static constexpr int kCellPx = 8;
@@ -58,7 +58,8 @@ class ColourPalette {
     [[nodiscard]] ColourSamplesOut row(int y) noexcept;
     /// The same for the light of the coarse image where it shows what moves; zero: nothing does.
     [[nodiscard]] std::array<float*, 3> moved_row(int y) noexcept;
-    /// Takes what was put into row(y).
+    /// Takes what was put into row(y). Rows of different cells may be filled and taken by threads
+    /// of their own.
     void add_row(int y) noexcept;
     void choose() noexcept;
     /// True where a cell next to this one, or at its corner, is of another surface.
@@ -67,6 +68,7 @@ class ColourPalette {
     /// @param samples kFineSamples x kFineSamples of them, kFineStepPx apart, row by row; they
     ///        reach one beyond the cell on each side
     /// @param moved light of the coarse image where it shows what moves
+    /// @thread different cells may be drawn at a time
     void draw_border(int cell_x, int cell_y, const ColourSamples& samples,
                      const std::array<const float*, 3>& moved) noexcept;
     void learn() noexcept;
@@ -134,7 +136,7 @@ class ColourPalette {
     // Of all samples: fine and coarse light, the reference, coarse light of what moves.
     std::array<Image<float>, 10> planes_;
     float moved_px_ = 0.0F;
-    std::vector<float> moved_costs_;                 // of a row
+    Image<float> moved_costs_;                       // of a row of samples in each row of cells
     std::array<Image<float>, kMostSurfaces> costs_;  // of each surface in each sample
     Image<std::uint8_t> cells_;                      // surface, and kMoved
     Image<std::uint8_t> surfaces_;

@@ -20,8 +20,10 @@ using V = hn::Vec<D>;
 
 // kTaps > 0 fixes the number of images at compile time, which keeps the coefficients in registers.
 template <int kTaps>
-void decode_pixels(const DecodeRow& row) {
+void decode_pixels(const DecodeRow& shared) {
     const D d;
+    // A copy, as what is stored could be part of `shared` for all that the compiler knows.
+    const DecodeRow row = shared;
     const hn::Rebind<std::uint8_t, D> d8;
     const hn::RebindToSigned<D> di;
     const int lanes = static_cast<int>(hn::Lanes(d));

@@ -18,7 +18,8 @@ void depth_row_scalar(const DepthRow& row) noexcept {
         const bool good = z >= row.near_mm && z <= row.far_mm;
         row.depth[i] = good ? static_cast<std::uint16_t>(std::nearbyint(z * kStepsPerMm)) : 0;
         const float trust = row.modulation[i] < 1.0F ? 1.0F : row.modulation[i];
-        row.quality[i] = good ? static_cast<std::uint8_t>(trust > 255.0F ? 255.0F : trust) : 0;
+        const float most = trust > 255.0F ? 255.0F : trust;
+        row.quality[i] = good ? static_cast<std::uint8_t>(std::nearbyint(most)) : 0;
     }
 }
 

@@ -14,13 +14,19 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+// Added to 2^23, a number is rounded to a whole one, which a float's last bits then are.
+constexpr float kRounding = 8388608.0F;
+
 template <bool kAffine>
-void depth_pixels(const DepthRow& row) {
+void depth_pixels(const DepthRow& shared) {
     const hn::ScalableTag<float> d;
-    const hn::RebindToSigned<decltype(d)> di;
+    // A copy, as what is stored could be part of `shared` for all that the compiler knows.
+    const DepthRow row = shared;
+    const hn::RebindToUnsigned<decltype(d)> du;
     const hn::Rebind<std::uint16_t, decltype(d)> d16;
     const hn::Rebind<std::uint8_t, decltype(d)> d8;
     const int lanes = static_cast<int>(hn::Lanes(d));
+    const auto rounding = hn::Set(d, kRounding);
     const auto steps_per_mm = hn::Set(d, static_cast<float>(1.0 / kDepthUnitMm));
     const auto a_step = hn::Set(d, row.a_step);
     const auto c_step = hn::Set(d, row.c_step);
@@ -48,12 +54,12 @@ void depth_pixels(const DepthRow& row) {
         const auto x = hn::LoadU(d, row.coordinate_px + at);
         const auto z = hn::Div(hn::MulAdd(slope, x, minus_b), hn::NegMulAdd(c, x, a));
         const auto good = hn::And(hn::Ge(z, nearest), hn::Le(z, farthest));
-        const auto steps = hn::NearestInt(hn::IfThenElseZero(good, hn::Mul(z, steps_per_mm)));
-        hn::StoreU(hn::DemoteTo(d16, steps), d16, row.depth + at);
+        const auto steps = hn::IfThenElseZero(good, hn::MulAdd(z, steps_per_mm, rounding));
+        hn::StoreU(hn::TruncateTo(d16, hn::BitCast(du, steps)), d16, row.depth + at);
         const auto trust =
             hn::Min(hn::Max(hn::LoadU(d, row.modulation + at), least_trust), most_trust);
-        const auto quality = hn::ConvertTo(di, hn::IfThenElseZero(good, trust));
-        hn::StoreU(hn::DemoteTo(d8, quality), d8, row.quality + at);
+        const auto levels = hn::IfThenElseZero(good, hn::Add(trust, rounding));
+        hn::StoreU(hn::TruncateTo(d8, hn::BitCast(du, levels)), d8, row.quality + at);
     }
 }
 

@@ -81,10 +81,26 @@ Result<Triangulation> Triangulation::create(const Rig& rig, Axis axis, Size imag
             }
         }
     }
+    t.set_steps();
     if (auto error = t.check_parallax(axis)) {
         return *error;
     }
     return t;
+}
+
+void Triangulation::set_steps() noexcept {
+    if (!ray_x_.empty()) {
+        return;
+    }
+    const int right = size_.width - 1;
+    const int bottom = size_.height - 1;
+    origin_ = ratio(0, 0);
+    const Ratio beside = ratio(right, 0);
+    const Ratio below = ratio(0, bottom);
+    const double columns = std::max(right, 1);
+    const double rows = std::max(bottom, 1);
+    per_column_ = {(beside.a - origin_.a) / columns, (beside.c - origin_.c) / columns, 0.0};
+    per_row_ = {(below.a - origin_.a) / rows, (below.c - origin_.c) / rows, 0.0};
 }
 
 std::optional<Error> Triangulation::check_parallax(Axis axis) const {
@@ -128,15 +144,12 @@ void Triangulation::prepare_row(int y, float* scratch, DepthRow& row) const noex
     row.near_mm = static_cast<float>(near_mm_);
     row.far_mm = static_cast<float>(far_mm_);
     if (ray_x_.empty()) {
-        const Ratio first = ratio(0, y);
-        const Ratio last = ratio(size_.width - 1, y);
-        const double steps = std::max(size_.width - 1, 1);
         row.a = nullptr;
         row.c = nullptr;
-        row.a0 = static_cast<float>(first.a);
-        row.c0 = static_cast<float>(first.c);
-        row.a_step = static_cast<float>((last.a - first.a) / steps);
-        row.c_step = static_cast<float>((last.c - first.c) / steps);
+        row.a0 = static_cast<float>(origin_.a + y * per_row_.a);
+        row.c0 = static_cast<float>(origin_.c + y * per_row_.c);
+        row.a_step = static_cast<float>(per_column_.a);
+        row.c_step = static_cast<float>(per_column_.c);
         return;
     }
     const float* x = ray_x_.row(y);

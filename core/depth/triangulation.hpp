@@ -67,6 +67,7 @@ class Triangulation {
     [[nodiscard]] Ratio ratio(int u, int v) const noexcept;
     /// How far the projector's lens moves the coordinate of a point at depth z, px.
     [[nodiscard]] double lens_shift_px(const Ratio& ratio, double z_mm) const noexcept;
+    void set_steps() noexcept;
     [[nodiscard]] std::optional<Error> check_parallax(Axis axis) const;
 
     Size size_;
@@ -82,7 +83,8 @@ class Triangulation {
     bool has_volume_ = false;
     double near_mm_ = kDefaultNearMm;
     double far_mm_ = kDefaultFarMm;
-    Image<float> ray_x_;  // empty without camera distortion
+    Ratio origin_, per_column_, per_row_;  // without camera distortion, a and c are affine
+    Image<float> ray_x_;                   // empty without camera distortion
     Image<float> ray_y_;
 };
 

@@ -50,7 +50,9 @@ Result<void> DepthDecoder::Impl::prepare_colours(const Rig& rig) {
         }
     }
     palette.emplace(size, colours, colour_period(fine), coarse, first_px, last_px);
-    row_taps.resize(size.width, static_cast<int>(ColourModel::kTaps));
+    for (Scratch& scratch : scratches) {
+        scratch.taps.resize(size.width, static_cast<int>(ColourModel::kTaps));
+    }
     return {};
 }
 
@@ -114,19 +116,22 @@ void DepthDecoder::Impl::sample_colours(const ColourRow& row, int x, std::size_t
 
 void DepthDecoder::Impl::choose_surfaces() noexcept {
     palette->begin(coarse_drift_px());
-    for (int y = 0; y < size.height; y += kStep) {
-        const ColourRow row = colour_row(y);
-        const ColourSamplesOut out = palette->row(y);
-        const std::array<float*, 3> moved = palette->moved_row(y);
-        for (int x = 0; x < size.width; x += kStep) {
-            sample_colours(row, x, static_cast<std::size_t>(x / kStep), out, moved);
+    // Cells are summed up row by row, so a band is whole cells.
+    team->run(0, size.height, kCell, [this](int, int first, int last) {
+        for (int y = first; y < last; y += kStep) {
+            const ColourRow row = colour_row(y);
+            const ColourSamplesOut out = palette->row(y);
+            const std::array<float*, 3> moved = palette->moved_row(y);
+            for (int x = 0; x < size.width; x += kStep) {
+                sample_colours(row, x, static_cast<std::size_t>(x / kStep), out, moved);
+            }
+            palette->add_row(y);
         }
-        palette->add_row(y);
-    }
+    });
     palette->choose();
 }
 
-void DepthDecoder::Impl::draw_borders() noexcept {
+void DepthDecoder::Impl::draw_borders(int first_cell_y, int last_cell_y) noexcept {
     constexpr int kSide = ColourPalette::kFineSamples;
     constexpr int kFine = ColourPalette::kFineStepPx;
     constexpr std::size_t kCount = static_cast<std::size_t>(kSide) * kSide;
@@ -138,7 +143,7 @@ void DepthDecoder::Impl::draw_borders() noexcept {
     const ColourSamples samples{{planes[0].data(), planes[1].data(), planes[2].data()},
                                 {planes[3].data(), planes[4].data(), planes[5].data()},
                                 planes[6].data()};
-    for (int cy = 0; cy < palette->cells_y(); ++cy) {
+    for (int cy = first_cell_y; cy < last_cell_y; ++cy) {
         std::array<ColourRow, kSide> rows;
         for (int j = 0; j < kSide; ++j) {
             rows[static_cast<std::size_t>(j)] =
@@ -171,17 +176,18 @@ float DepthDecoder::Impl::coarse_drift_px() const noexcept {
     return frame == nullptr || !moves() ? 0.0F : static_cast<float>(drift_px_since(*frame));
 }
 
-void DepthDecoder::Impl::decode_moved_colours(int y, const RowOut& out) noexcept {
+void DepthDecoder::Impl::decode_moved_colours(int y, const RowOut& out, Scratch& scratch) noexcept {
     constexpr int kFine = ColourPalette::kFineStepPx;
     const std::uint8_t* surfaces = palette->surfaces().row(y / kFine);
-    const RowOut moved{moving_phase.row(0), moving_modulation.row(0), moving_coordinate.row(0)};
+    const RowOut moved{scratch.moving_phase.row(0), scratch.moving_modulation.row(0),
+                       scratch.moving_coordinate.row(0)};
     bool decoded = false;
     for (int x = 0; can_follow && x < size.width; ++x) {
         if (!ColourPalette::is_moved(surfaces[x / kFine])) {
             continue;
         }
         if (!decoded) {
-            decode_row_chain(following, y, moved);
+            decode_row_chain(following, y, moved, scratch);
             decoded = true;
         }
         out.phase[x] = moved.phase[x];
@@ -196,18 +202,21 @@ void DepthDecoder::Impl::tell_surfaces() noexcept {
         palette->learn();
         choose_surfaces();
     }
-    draw_borders();
-    row_of_taps = -1;
+    team->run(0, palette->cells_y(), 1,
+              [this](int, int first, int last) { draw_borders(first, last); });
+    for (Scratch& scratch : scratches) {
+        scratch.row_of_taps = -1;
+    }
 }
 
 // The taps of each pixel's surface.
-void DepthDecoder::Impl::colours_of_row(int y) noexcept {
+void DepthDecoder::Impl::colours_of_row(int y, Scratch& scratch) const noexcept {
     constexpr int kFine = ColourPalette::kFineStepPx;
-    if (y / kFine == row_of_taps) {
+    if (y / kFine == scratch.row_of_taps) {
         return;
     }
-    row_of_taps = y / kFine;
-    const std::uint8_t* surfaces = palette->surfaces().row(row_of_taps);
+    scratch.row_of_taps = y / kFine;
+    const std::uint8_t* surfaces = palette->surfaces().row(scratch.row_of_taps);
     for (int begin = 0; begin < size.width;) {
         int end = begin + 1;
         const std::size_t surface = ColourPalette::surface_of(surfaces[begin / kFine]);
@@ -216,8 +225,8 @@ void DepthDecoder::Impl::colours_of_row(int y) noexcept {
         }
         const ColourModel::Taps& taps = palette->taps(surface);
         for (std::size_t t = 0; t < taps.size(); ++t) {
-            std::fill(row_taps.row(static_cast<int>(t)) + begin,
-                      row_taps.row(static_cast<int>(t)) + end, taps[t]);
+            std::fill(scratch.taps.row(static_cast<int>(t)) + begin,
+                      scratch.taps.row(static_cast<int>(t)) + end, taps[t]);
         }
         begin = end;
     }

@@ -21,6 +21,7 @@ constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr int kClipped = 255;
 // A coordinate may pass the projector's border by this much of noise, px.
 constexpr double kBorderMarginPx = 1.0;
+constexpr int kBandRows = 16;
 
 }  // namespace
 
@@ -86,23 +87,24 @@ void DepthDecoder::Impl::choose_colour_images(const SinePlan& period, int y,
     }
 }
 
-const std::uint8_t* DepthDecoder::Impl::grey_row(const Frame& frame, int y,
-                                                 std::size_t buffer) noexcept {
+const std::uint8_t* DepthDecoder::Impl::grey_row(const Frame& frame, int y, std::size_t buffer,
+                                                 Scratch& scratch) const noexcept {
     const std::uint8_t* pixels = frame.pixels.row(y);
     if (frame.format == PixelFormat::grey8) {
         return pixels;
     }
-    std::uint8_t* grey = row_grey.row(static_cast<int>(buffer));
+    std::uint8_t* grey = scratch.grey.row(static_cast<int>(buffer));
     luma_row(pixels, size.width, grey);
     return grey;
 }
 
 // A ramp's grey value between black and white, as a phase.
-void DepthDecoder::Impl::decode_ramp_row(std::size_t sine, int y, const RowOut& out) noexcept {
+void DepthDecoder::Impl::decode_ramp_row(std::size_t sine, int y, const RowOut& out,
+                                         Scratch& scratch) const noexcept {
     const SinePlan& period = plan.sines[sine];
-    const std::uint8_t* ramp = grey_row(*window.clean(period.patterns.front(), y), y, 0);
-    const std::uint8_t* white = grey_row(*window.clean(plan.white, y), y, 1);
-    const std::uint8_t* black = grey_row(*window.clean(plan.black, y), y, 2);
+    const std::uint8_t* ramp = grey_row(*window.clean(period.patterns.front(), y), y, 0, scratch);
+    const std::uint8_t* white = grey_row(*window.clean(plan.white, y), y, 1, scratch);
+    const std::uint8_t* black = grey_row(*window.clean(plan.black, y), y, 2, scratch);
     constexpr float kTurn = 2.0F * std::numbers::pi_v<float>;
     for (int x = 0; x < size.width; ++x) {
         const float range = static_cast<float>(white[x]) - static_cast<float>(black[x]);
@@ -119,9 +121,9 @@ void DepthDecoder::Impl::decode_ramp_row(std::size_t sine, int y, const RowOut& 
 }
 
 void DepthDecoder::Impl::decode_sine_row(std::size_t sine, const Images& images, int y,
-                                         const RowOut& out) noexcept {
+                                         const RowOut& out, Scratch& scratch) const noexcept {
     if (plan.sines[sine].kind == PeriodKind::ramp) {
-        decode_ramp_row(sine, y, out);
+        decode_ramp_row(sine, y, out, scratch);
         return;
     }
     const auto count = static_cast<std::size_t>(images.taps.count);
@@ -157,8 +159,8 @@ void DepthDecoder::Impl::decode_sine_row(std::size_t sine, const Images& images,
         fill(row);
         row.frames = count;
         for (std::size_t c = 0; c < 3; ++c) {
-            row.re[c] = row_taps.row(static_cast<int>(c)) + begin;
-            row.im[c] = row_taps.row(static_cast<int>(c) + 3) + begin;
+            row.re[c] = scratch.taps.row(static_cast<int>(c)) + begin;
+            row.im[c] = scratch.taps.row(static_cast<int>(c) + 3) + begin;
         }
         for (std::size_t n = 0; n < count; ++n) {
             const Tap& tap = images.taps.taps[n];
@@ -173,7 +175,7 @@ void DepthDecoder::Impl::decode_sine_row(std::size_t sine, const Images& images,
         row.taps = images.taps.count;
         for (std::size_t n = 0; n < count; ++n) {
             const Tap& tap = images.taps.taps[n];
-            row.source[n] = grey_row(*images.frames[n], y + tap.dy, n) + begin + tap.dx;
+            row.source[n] = grey_row(*images.frames[n], y + tap.dy, n, scratch) + begin + tap.dx;
             row.re[n] = tap.re;
             row.im[n] = tap.im;
         }
@@ -182,14 +184,15 @@ void DepthDecoder::Impl::decode_sine_row(std::size_t sine, const Images& images,
     plan.sines[sine].gamma.apply(size.width, out.phase);
 }
 
-void DepthDecoder::Impl::decode_gray_row(int y, float* coordinate_px, float* modulation) noexcept {
+void DepthDecoder::Impl::decode_gray_row(int y, float* coordinate_px, float* modulation,
+                                         Scratch& scratch) noexcept {
     const GrayPlan& gray = *plan.gray;
     GrayRow row;
     row.count = size.width;
     row.bits = gray.bits;
     std::size_t buffer = 0;
     const auto source = [&](int pattern) -> const std::uint8_t* {
-        return pattern < 0 ? nullptr : grey_row(*window.clean(pattern, y), y, buffer++);
+        return pattern < 0 ? nullptr : grey_row(*window.clean(pattern, y), y, buffer++, scratch);
     };
     for (std::size_t bit = 0; bit < static_cast<std::size_t>(gray.bits); ++bit) {
         row.image[bit] = source(gray.image[bit]);
@@ -218,29 +221,29 @@ void DepthDecoder::Impl::decode_gray_row(int y, float* coordinate_px, float* mod
 }
 
 void DepthDecoder::Impl::decode_row_chain(const std::vector<Images>& chain, int y,
-                                          const RowOut& out) noexcept {
+                                          const RowOut& out, Scratch& scratch) noexcept {
     const std::size_t sines = chain.size();
     if (!geometry) {
         if (sines > 0) {
-            decode_sine_row(sines - 1, chain.back(), y, out);
+            decode_sine_row(sines - 1, chain.back(), y, out, scratch);
         }
         return;
     }
     // Two buffers take turns as reference and result, so that the last result lands in `out`.
-    float* result = sines % 2 == 1 ? out.coordinate : row_reference.row(0);
-    float* spare = sines % 2 == 1 ? row_reference.row(0) : out.coordinate;
+    float* result = sines % 2 == 1 ? out.coordinate : scratch.reference.row(0);
+    float* spare = sines % 2 == 1 ? scratch.reference.row(0) : out.coordinate;
     const float* reference = spare;
     auto tolerance = static_cast<float>(settings.order_tolerance);
     if (settings.order == OrderSource::depth_image) {
         reference = order_px.row(y);
     } else if (plan.gray) {
-        decode_gray_row(y, spare, out.modulation);
+        decode_gray_row(y, spare, out.modulation, scratch);
     } else {
         reference = order.row(y);
         tolerance = order.tolerance();
     }
     for (std::size_t n = 0; n < sines; ++n) {
-        decode_sine_row(n, chain[n], y, out);
+        decode_sine_row(n, chain[n], y, out, scratch);
         UnwrapRow row;
         row.count = size.width;
         row.reference_px = reference;
@@ -257,11 +260,11 @@ void DepthDecoder::Impl::decode_row_chain(const std::vector<Images>& chain, int 
     }
 }
 
-void DepthDecoder::Impl::average_row(const Images& images, int y) noexcept {
+void DepthDecoder::Impl::average_row(const Images& images, int y, Scratch& scratch) noexcept {
     float* mean = average.row(y);
     if (plan.sines.back().kind == PeriodKind::ramp) {
-        const std::uint8_t* white = grey_row(*window.clean(plan.white, y), y, 0);
-        const std::uint8_t* black = grey_row(*window.clean(plan.black, y), y, 1);
+        const std::uint8_t* white = grey_row(*window.clean(plan.white, y), y, 0, scratch);
+        const std::uint8_t* black = grey_row(*window.clean(plan.black, y), y, 1, scratch);
         for (int i = 0; i < size.width; ++i) {
             mean[i] = 0.5F * static_cast<float>(white[i] + black[i]);
         }
@@ -270,7 +273,7 @@ void DepthDecoder::Impl::average_row(const Images& images, int y) noexcept {
     std::fill(mean, mean + size.width, 0.0F);
     const float weight = 1.0F / static_cast<float>(images.taps.count);
     for (std::size_t n = 0; n < static_cast<std::size_t>(images.taps.count); ++n) {
-        const std::uint8_t* grey = grey_row(*images.frames[n], y, n);
+        const std::uint8_t* grey = grey_row(*images.frames[n], y, n, scratch);
         for (int i = 0; i < size.width; ++i) {
             mean[i] += weight * static_cast<float>(grey[i]);
         }
@@ -297,18 +300,18 @@ void DepthDecoder::Impl::mask_rows(int begin, int end) noexcept {
     }
 }
 
-void DepthDecoder::Impl::triangulate_row(int y, const RowOut& out) noexcept {
+void DepthDecoder::Impl::triangulate_row(int y, const RowOut& out, Scratch& scratch) noexcept {
     if (!geometry) {
         std::fill_n(depth.depth.row(y), size.width, std::uint16_t{0});
         std::fill_n(depth.quality.row(y), size.width, std::uint8_t{0});
         return;
     }
     DepthRow row;
-    geometry->prepare_row(y, row_rays.row(0), row);
+    geometry->prepare_row(y, scratch.rays.row(0), row);
     row.count = size.width;
     row.coordinate_px = out.coordinate;
     if (geometry->projector_distorted()) {
-        float* ideal = row_ideal.row(0);
+        float* ideal = scratch.ideal.row(0);
         std::copy_n(out.coordinate, size.width, ideal);
         geometry->undistort_projector_row(y, size.width, ideal);
         row.coordinate_px = ideal;
@@ -318,10 +321,10 @@ void DepthDecoder::Impl::triangulate_row(int y, const RowOut& out) noexcept {
     row.quality = depth.quality.row(y);
     depth_row(row);
     if (!sigma.empty()) {
-        noise_gain_row(y, row_ideal.row(0));
+        noise_gain_row(y, scratch.ideal.row(0));
         SigmaRow noise;
         noise.mean = average.row(y);
-        noise.noise_gain = row_ideal.row(0);
+        noise.noise_gain = scratch.ideal.row(0);
         noise.period_px = static_cast<float>(plan.sines.back().period_px);
         noise.read_noise_levels = static_cast<float>(settings.read_noise_levels);
         noise.electrons_per_level = static_cast<float>(settings.electrons_per_level);
@@ -371,26 +374,32 @@ void DepthDecoder::Impl::decode_rows(int begin, int end) noexcept {
         }
     }
     follow_images();
-    for (int y = begin; y < end; ++y) {
-        const bool keep = settings.keep_maps;
-        const RowOut out{
-            phase_map.phase_rad.empty() ? row_phase.row(0) : phase_map.phase_rad.row(y),
-            keep ? phase_map.modulation.row(y) : row_modulation.row(0),
-            coordinate.empty() ? row_coordinate.row(0) : coordinate.row(y)};
-        if (palette) {
-            colours_of_row(y);
+    team->run(begin, end, kBandRows, [this](int member, int first, int last) {
+        for (int y = first; y < last; ++y) {
+            decode_one_row(y, scratches[static_cast<std::size_t>(member)]);
         }
-        decode_row_chain(still, y, out);
-        if (palette) {
-            decode_moved_colours(y, out);
-        } else if (motion) {
-            decode_moving_row(y, out);
-        }
-        if (keep && !still.empty()) {
-            average_row(still.back(), y);
-        }
-        triangulate_row(y, out);
+    });
+}
+
+void DepthDecoder::Impl::decode_one_row(int y, Scratch& scratch) noexcept {
+    const bool keep = settings.keep_maps;
+    const RowOut out{
+        phase_map.phase_rad.empty() ? scratch.phase.row(0) : phase_map.phase_rad.row(y),
+        keep ? phase_map.modulation.row(y) : scratch.modulation.row(0),
+        coordinate.empty() ? scratch.coordinate.row(0) : coordinate.row(y)};
+    if (palette) {
+        colours_of_row(y, scratch);
     }
+    decode_row_chain(still, y, out, scratch);
+    if (palette) {
+        decode_moved_colours(y, out, scratch);
+    } else if (motion) {
+        decode_moving_row(y, out, scratch);
+    }
+    if (keep && !still.empty()) {
+        average_row(still.back(), y, scratch);
+    }
+    triangulate_row(y, out, scratch);
 }
 
 }  // namespace xtrack

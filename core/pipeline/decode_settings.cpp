@@ -40,6 +40,11 @@ constexpr DecodeField number(const char* name, const char* unit, double least, d
     return {name, unit, summary, least, most, false, {}, get<kMember>, set<kMember>};
 }
 template <auto kMember>
+constexpr DecodeField whole(const char* name, const char* unit, double least, double most,
+                            const char* summary) {
+    return {name, unit, summary, least, most, true, {}, get<kMember>, set<kMember>};
+}
+template <auto kMember>
 constexpr DecodeField choice(const char* name, std::span<const char* const> choices,
                              const char* summary) {
     return {name, "",      summary,      0.0,         static_cast<double>(choices.size() - 1),
@@ -47,7 +52,7 @@ constexpr DecodeField choice(const char* name, std::span<const char* const> choi
 }
 
 using S = DecodeSettings;
-constexpr std::array<DecodeField, 12> kFields{{
+constexpr std::array<DecodeField, 13> kFields{{
     number<&S::min_modulation>("min_modulation", "grey levels", 0.0, 127.0,
                                "pixels of less fringe amplitude are masked"),
     choice<&S::mask_saturated>("mask_saturated", kSwitch, "mask pixels that reach 255"),
@@ -60,20 +65,13 @@ constexpr std::array<DecodeField, 12> kFields{{
     choice<&S::motion>("motion", kMotions, "what is done about things that move"),
     number<&S::motion_tolerance>("motion_tolerance", "amplitudes", 0.05, 10.0,
                                  "pixels that change by more between two cycles are masked"),
-    {"max_motion_px",
-     "px",
-     "largest move within a cycle",
-     8.0,
-     400.0,
-     true,
-     {},
-     get<&S::max_motion_px>,
-     set<&S::max_motion_px>},
+    whole<&S::max_motion_px>("max_motion_px", "px", 8.0, 400.0, "largest move within a cycle"),
     number<&S::read_noise_levels>("read_noise_levels", "grey levels", 0.0, 20.0,
                                   "the camera's noise in the dark, rms"),
     number<&S::electrons_per_level>("electrons_per_level", "electrons", 1.0, 1e5,
                                     "light that makes one grey level"),
     choice<&S::keep_maps>("keep_maps", kSwitch, "keep phase, modulation and the like"),
+    whole<&S::threads>("threads", "", 1.0, 16.0, "threads that share the rows of an image"),
 }};
 
 std::string what_it_takes(const DecodeField& field) {

@@ -22,6 +22,8 @@ namespace {
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 // For the direction in which coordinates grow, which is the same at all depths.
 constexpr double kAnyDepth_mm = 1000.0;
+// That one row is decoded from.
+constexpr int kMostImages = std::max(kMaxTaps, 2 * kMaxGrayBits + 2);
 
 }  // namespace
 
@@ -34,7 +36,19 @@ DepthDecoder::Impl::Impl(DecodePlan decode_plan, const DecodeSettings& decode_se
       following(plan.sines.size()),
       ramp_exponent(static_cast<float>(plan.gamma > 0.0 ? 1.0 / plan.gamma : 1.0)) {}
 
+DepthDecoder::Impl::Scratch::Scratch(int width) : grey(width, kMostImages) {
+    for (Image<float>* row : {&phase, &modulation, &coordinate, &reference, &ideal, &moving_phase,
+                              &moving_modulation, &moving_coordinate}) {
+        row->resize(width, 1);
+    }
+    rays.resize(2 * width, 1);
+}
+
 Result<void> DepthDecoder::Impl::prepare(const Rig& rig) {
+    team.emplace(settings.threads);
+    for (int member = 0; member < team->members(); ++member) {
+        scratches.emplace_back(size.width);
+    }
     if (settings.order != OrderSource::none) {
         auto made = Triangulation::create(rig, plan.axis, size);
         if (!made) {
@@ -79,12 +93,12 @@ Result<void> DepthDecoder::Impl::prepare(const Rig& rig) {
     if (settings.keep_maps) {
         phase_map.period_px = plan.sines.empty() ? 0.0 : plan.sines.back().period_px;
         if (!plan.sines.empty()) {
-            phase_map.phase_rad.resize(size.width, size.height);
+            phase_map.phase_rad = Image<float>(size.width, size.height, kNone);
         }
-        phase_map.modulation.resize(size.width, size.height);
-        average.resize(size.width, size.height);
+        phase_map.modulation = Image<float>(size.width, size.height, 0.0F);
+        average = Image<float>(size.width, size.height, 0.0F);
         if (geometry) {
-            coordinate.resize(size.width, size.height);
+            coordinate = Image<float>(size.width, size.height, kNone);
             const bool phases = !plan.sines.empty() && plan.sines.back().kind != PeriodKind::ramp;
             if (phases) {
                 sigma = Image<float>(size.width, size.height, 0.0F);
@@ -93,10 +107,6 @@ Result<void> DepthDecoder::Impl::prepare(const Rig& rig) {
     }
     if (plan.carrier()) {
         carrier_grey.resize(size.width, size.height);
-    }
-    for (Image<float>* row : {&row_phase, &row_modulation, &row_coordinate, &row_reference,
-                              &row_ideal, &moving_phase, &moving_modulation, &moving_coordinate}) {
-        row->resize(size.width, 1);
     }
     if (settings.motion != MotionHandling::off && plan.motion_matters()) {
         MotionEstimator::Settings motion_settings;
@@ -108,8 +118,6 @@ Result<void> DepthDecoder::Impl::prepare(const Rig& rig) {
         moving_depths.reserve(static_cast<std::size_t>(motion->cells_x()) *
                               static_cast<std::size_t>(motion->cells_y()));
     }
-    row_rays.resize(2 * size.width, 1);
-    row_grey.resize(size.width, std::max(kMaxTaps, 2 * kMaxGrayBits + 2));
     return {};
 }
 

@@ -15,6 +15,7 @@
 #include "core/pipeline/frame_window.hpp"
 #include "core/pipeline/motion.hpp"
 #include "core/pipeline/order_reference.hpp"
+#include "core/pipeline/row_team.hpp"
 
 namespace xtrack {
 
@@ -36,22 +37,38 @@ struct DepthDecoder::Impl {
         float* coordinate = nullptr;
     };
 
+    // Rows of one member of the team, small enough to stay in the first-level cache.
+    struct Scratch {
+        explicit Scratch(int width);
+
+        Image<float> phase, modulation, coordinate, reference, ideal, rays;
+        Image<float> moving_phase, moving_modulation, moving_coordinate;
+        Image<std::uint8_t> grey;
+        Image<float> taps;  // ColourModel::kTaps rows, for the row at hand
+        int row_of_taps = -1;
+    };
+
     Result<void> prepare(const Rig& rig);
     DecodeStatus push(const FramePtr& frame) noexcept;
     void register_depth(const Frame& newest) noexcept;
 
     void decode_rows(int begin, int end) noexcept;
+    void decode_one_row(int y, Scratch& scratch) noexcept;
     void mask_rows(int begin, int end) noexcept;
     bool choose_images(std::size_t sine, int y, Images& images) const noexcept;
     bool choose_carrier_image(const SinePlan& period, int y, Images& images) const noexcept;
     void find_carrier(const Frame& frame) noexcept;
     void choose_colour_images(const SinePlan& period, int y, Images& images) const noexcept;
-    const std::uint8_t* grey_row(const Frame& frame, int y, std::size_t buffer) noexcept;
-    void decode_sine_row(std::size_t sine, const Images& images, int y, const RowOut& out) noexcept;
-    void decode_ramp_row(std::size_t sine, int y, const RowOut& out) noexcept;
-    void decode_gray_row(int y, float* coordinate, float* modulation) noexcept;
+    const std::uint8_t* grey_row(const Frame& frame, int y, std::size_t buffer,
+                                 Scratch& scratch) const noexcept;
+    void decode_sine_row(std::size_t sine, const Images& images, int y, const RowOut& out,
+                         Scratch& scratch) const noexcept;
+    void decode_ramp_row(std::size_t sine, int y, const RowOut& out,
+                         Scratch& scratch) const noexcept;
+    void decode_gray_row(int y, float* coordinate, float* modulation, Scratch& scratch) noexcept;
     /// Decodes and unwraps every period; out.coordinate is not touched without geometry.
-    void decode_row_chain(const std::vector<Images>& chain, int y, const RowOut& out) noexcept;
+    void decode_row_chain(const std::vector<Images>& chain, int y, const RowOut& out,
+                          Scratch& scratch) noexcept;
     // colour_rows.cpp: which surface every pixel is of.
     struct ColourRow {                       // what samples of a row are taken from
         const std::uint8_t* fine = nullptr;  // bgr; null: not seen cleanly
@@ -64,16 +81,16 @@ struct DepthDecoder::Impl {
     Result<void> prepare_colours(const Rig& rig);
     void tell_surfaces() noexcept;
     void choose_surfaces() noexcept;
-    void draw_borders() noexcept;
+    void draw_borders(int first_cell_y, int last_cell_y) noexcept;
     [[nodiscard]] ColourRow colour_row(int y) const noexcept;
     void sample_colours(const ColourRow& row, int x, std::size_t at, const ColourSamplesOut& out,
                         const std::array<float*, 3>& moved) const noexcept;
     [[nodiscard]] bool moves() const noexcept;
     [[nodiscard]] float coarse_drift_px() const noexcept;
-    void decode_moved_colours(int y, const RowOut& out) noexcept;
-    void colours_of_row(int y) noexcept;
-    void average_row(const Images& images, int y) noexcept;
-    void triangulate_row(int y, const RowOut& row) noexcept;
+    void decode_moved_colours(int y, const RowOut& out, Scratch& scratch) noexcept;
+    void colours_of_row(int y, Scratch& scratch) const noexcept;
+    void average_row(const Images& images, int y, Scratch& scratch) noexcept;
+    void triangulate_row(int y, const RowOut& row, Scratch& scratch) noexcept;
     void noise_gain_row(int y, float* gain) const noexcept;
 
     /// The chosen images once more, moved along with what moves, their taps corrected.
@@ -81,7 +98,7 @@ struct DepthDecoder::Impl {
     [[nodiscard]] double find_moving_depth_mm() noexcept;
     void set_phase_gradient() noexcept;
     [[nodiscard]] double drift_px_since(const Frame& frame) const noexcept;
-    void decode_moving_row(int y, const RowOut& out) noexcept;
+    void decode_moving_row(int y, const RowOut& out, Scratch& scratch) noexcept;
     void add_cell_drift(int cx, int cy, int begin, int end, bool follow,
                         const RowOut& out) noexcept;
     void mask_disagreeing(int y, int begin, int end, bool follow, const RowOut& out) noexcept;
@@ -113,12 +130,8 @@ struct DepthDecoder::Impl {
     double drift_rad_per_cycle = 0.0;  // of the shortest period, at what moves
     std::vector<std::uint16_t> moving_depths;
     float ramp_exponent = 1.0F;  // of a ramp's light that gives its value
-    // Scratch rows, small enough to stay in the first-level cache.
-    Image<float> row_phase, row_modulation, row_coordinate, row_reference, row_ideal, row_rays;
-    Image<float> moving_phase, moving_modulation, moving_coordinate;
-    Image<std::uint8_t> row_grey;
-    Image<float> row_taps;  // ColourModel::kTaps rows, for the row at hand
-    int row_of_taps = -1;
+    std::optional<RowTeam> team;
+    std::vector<Scratch> scratches;  // of the team's members
 };
 
 }  // namespace xtrack

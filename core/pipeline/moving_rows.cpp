@@ -162,13 +162,14 @@ void DepthDecoder::Impl::add_cell_drift(int cx, int cy, int begin, int end, bool
     }
 }
 
-void DepthDecoder::Impl::decode_moving_row(int y, const RowOut& out) noexcept {
+void DepthDecoder::Impl::decode_moving_row(int y, const RowOut& out, Scratch& scratch) noexcept {
     constexpr int kCell = MotionEstimator::kCellPx;
     const int cy = std::min(y / kCell, motion->cells_y() - 1);
     if (!motion->row_disturbed(cy)) {
         return;
     }
-    const RowOut moved{moving_phase.row(0), moving_modulation.row(0), moving_coordinate.row(0)};
+    const RowOut moved{scratch.moving_phase.row(0), scratch.moving_modulation.row(0),
+                       scratch.moving_coordinate.row(0)};
     bool decoded = false;
     for (int cx = 0; cx < motion->cells_x(); ++cx) {
         if (!motion->disturbed(cx, cy)) {
@@ -179,7 +180,7 @@ void DepthDecoder::Impl::decode_moving_row(int y, const RowOut& out) noexcept {
         const bool follow = can_follow && motion->follows(cx, cy);
         if (follow) {
             if (!decoded) {
-                decode_row_chain(following, y, moved);
+                decode_row_chain(following, y, moved, scratch);
                 decoded = true;
             }
             std::copy(moved.phase + begin, moved.phase + end, out.phase + begin);

@@ -73,6 +73,9 @@ struct DecodeSettings {
     double electrons_per_level = 50.0;
     /// Keep phase, modulation, coordinate, average and sigma of each depth; costs memory traffic.
     bool keep_maps = false;
+    /// Threads that share the rows of an image, 1 ... 16, the one that pushes included. Results are
+    /// the same, bit by bit.
+    int threads = 1;
 };
 
 /// One field of DecodeSettings, for whatever lists, shows or changes settings by name: command

@@ -226,7 +226,7 @@ TEST(DepthDecoder, KeepsItsMapsOnRequest) {
     EXPECT_NEAR(decoder.phase().modulation.at(40, 30), 90.0F, 1.0F);
     EXPECT_NEAR(decoder.average().at(40, 30), 120.0F, 1.0F);
     EXPECT_EQ(decoder.depth().quality.at(40, 30),
-              static_cast<int>(decoder.phase().modulation.at(40, 30)));
+              std::lround(decoder.phase().modulation.at(40, 30)));
     EXPECT_TRUE(make(dual()).coordinate_px().empty());
 }
 
