@@ -97,6 +97,7 @@ class ColourPalette {
 
  private:
     static constexpr std::uint8_t kMoved = 128;
+    static constexpr std::size_t kGiven = 2;  // surfaces that are always there: grey and skin
     static constexpr int kFirstFrames = 9;
     static constexpr int kVoteCells = 40;  // along each axis of E
     struct Entry {
@@ -118,6 +119,13 @@ class ColourPalette {
     [[nodiscard]] ColourSamples row_samples(int row) const noexcept;
     [[nodiscard]] ColourModel::Light fine_at(int sx, int sy) const noexcept;
     [[nodiscard]] ColourModel::Light coarse_at(int sx, int sy) const noexcept;
+    [[nodiscard]] std::size_t index_of(int cell_x, int cell_y) const noexcept {
+        return static_cast<std::size_t>(cell_y) * static_cast<std::size_t>(cells_.width()) +
+               static_cast<std::size_t>(cell_x);
+    }
+    [[nodiscard]] Evidence sum_evidence(int cell_x, int cell_y, int reach_x,
+                                        int reach_y) const noexcept;
+    [[nodiscard]] Evidence evidence_around(int cell_x, int cell_y) const noexcept;
     void refine() noexcept;
     void search() noexcept;
     void vote(const ColourHypothesis& hypothesis, float weight) noexcept;
