@@ -14,7 +14,7 @@
 namespace xtrack {
 namespace {
 
-void expect_none(const PatternSequence& patterns, PixelFormat format, int wanted) {
+void expect_none(const PatternSequence& patterns, PixelFormat format, int wanted, int threads = 1) {
     if (!test::counts_allocations()) {
         GTEST_SKIP()
             << "allocations cannot be counted here: no glibc, or a sanitizer is in its way";
@@ -22,6 +22,7 @@ void expect_none(const PatternSequence& patterns, PixelFormat format, int wanted
     const Rig rig = test::plane_rig();
     DecodeSettings settings;
     settings.keep_maps = true;
+    settings.threads = threads;
     auto decoder = DepthDecoder::create(rig, patterns, rig.camera.size, settings);
     ASSERT_TRUE(decoder) << decoder.error().message;
     const int count = static_cast<int>(patterns.patterns.size());
@@ -53,6 +54,7 @@ TEST(NoAllocation, DecodingAllocatesNothing) {
     }
     // Colour: a depth with every image of the finest pattern.
     expect_none(rgb_sequence(Axis::x, {512, 384}, {512.0, 64.0}), PixelFormat::bgr8, 6);
+    expect_none(rgb_sequence(Axis::x, {512, 384}, {512.0, 64.0}), PixelFormat::bgr8, 6, 3);
 }
 
 void expect_none_in_paper_mode(const Rig* rig) {
