@@ -72,7 +72,7 @@ TEST_P(Threads, GiveTheSameBits) {
     auto settings = *SimSettings::preset(GetParam().preset);
     settings.camera.colour = settings.camera.colour || info(GetParam().method).colour;
     settings.script = {{.action = SimAction::swipe_left}};
-    settings.duration_s = 1.0;
+    settings.duration_s = 0.6;
     auto patterns = method_sequence(GetParam().method, settings.rig, Axis::x);
     ASSERT_TRUE(patterns) << patterns.error().message;
     settings.patterns = *patterns;
@@ -109,7 +109,7 @@ TEST_P(Threads, GiveTheSameBits) {
             ASSERT_TRUE(same_bits(one.sigma_mm(), decoders[n].sigma_mm())) << depths;
         }
     }
-    EXPECT_GT(depths, 10);
+    EXPECT_GT(depths, 3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Sequences, Threads,
