@@ -260,7 +260,10 @@ PatternCurves::PatternCurves(const SimSettings& settings, std::size_t channels)
                 const double shown =
                     intensity(settings.patterns.patterns[p], static_cast<double>(x), colour);
                 const double level = std::round(shown * kLevels) / kLevels;
-                sharp[x] = black + (1.0 - black) * std::pow(level, settings.projector.gamma);
+                const double bent = settings.projector.s_curve[static_cast<std::size_t>(colour)];
+                const double light = (1.0 - bent) * std::pow(level, settings.projector.gamma) +
+                                     bent * level * level * (3.0 - 2.0 * level);
+                sharp[x] = black + (1.0 - black) * light;
             }
             for (int x = 0; x <= last; ++x) {
                 double v = 0.0;
