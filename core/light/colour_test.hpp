@@ -21,13 +21,13 @@ struct ColourTestInput {
     const LightSamples& samples;
     const PatternSequence& sequence;  ///< with the response that is believed where no ramp is
     std::span<const std::size_t> pixels;
-    std::span<const float> coordinate_px;            ///< one for each pixel; NaN: none
-    std::vector<std::array<LightRange, 3>> ranges;   ///< of each pixel's red, green, blue
-    bool ranges_in_colour = false;                   ///< false: they are luma's
-    const Ramp* ramp = nullptr;                      ///< null: none was shown
-    std::array<std::vector<double>, 3> ramp_shares;  ///< in the camera's red, green, blue
-    const Triangulation* geometry = nullptr;         ///< null: no rig
-    const Rig* rig = nullptr;                        ///< the same
+    std::span<const float> coordinate_px;              ///< one for each pixel; NaN: none
+    bool ranges_in_colour = false;                     ///< false: they are luma's
+    std::vector<std::array<LightRange, 3>> ranges{};   ///< of each pixel's red, green, blue
+    const Ramp* ramp = nullptr;                        ///< null: none was shown
+    std::array<std::vector<double>, 3> ramp_shares{};  ///< in the camera's red, green, blue
+    const Triangulation* geometry = nullptr;           ///< null: no rig
+    const Rig* rig = nullptr;                          ///< the same
 };
 
 struct ColourTestResult {

@@ -84,7 +84,8 @@ Result<void> LightCalibrator::Impl::prepare() {
     if (!has_ramp() && colours.empty()) {
         return unsupported(
             "the sequence shows neither a ramp of grey levels nor colour fringes; "
-            "show that of light_sequence()");
+            "show that of light_sequence() (`xtrack calibrate patterns`) (`xtrack calibrate "
+            "patterns`)");
     }
     if (!has_ramp() && !sequence.gamma && !sequence.response) {
         return unsupported(
@@ -201,8 +202,11 @@ void LightCalibrator::Impl::measure_colours(std::span<const std::size_t> pixels,
     const std::vector<float> coordinate_px = coordinates->of(samples, pixels, grey);
     const bool ranges_in_colour =
         in_colour(ramp.steps.empty() ? coordinates->patterns() : flat_patterns());
-    ColourTestInput input{samples, sequence, pixels, coordinate_px, {}, ranges_in_colour, {},
-                          {},      {},       {}};
+    ColourTestInput input{.samples = samples,
+                          .sequence = sequence,
+                          .pixels = pixels,
+                          .coordinate_px = coordinate_px,
+                          .ranges_in_colour = ranges_in_colour};
     for (const std::size_t pixel : pixels) {
         auto& ranges = input.ranges.emplace_back();
         for (std::size_t c = 0; c < ranges.size(); ++c) {
@@ -225,7 +229,12 @@ void LightCalibrator::Impl::measure_colours(std::span<const std::size_t> pixels,
 }
 
 Result<LightCalibration> LightCalibrator::Impl::finish() const {
-    const bool with_colours = !colours.empty() && in_colour(colours);
+    const auto sees_colour = [&](const std::vector<int>& patterns) {
+        return std::any_of(patterns.begin(), patterns.end(),
+                           [&](int pattern) { return samples.in_colour(pattern); });
+    };
+    const bool with_colours =
+        !colours.empty() && (sees_colour(colours) || sees_colour(flat_patterns()));
     std::vector<int> needed = flat_patterns();
     if (with_colours) {
         for (const std::vector<int>& more : {coordinates->patterns(), colours}) {
