@@ -213,7 +213,7 @@ Result<PatternSequence> chosen_patterns(const PatternOptions& options, GammaComp
         return bytes.error();
     }
     auto patterns = capture::parse_patterns(*bytes, options.from);
-    if (patterns && (patterns->response || patterns->gamma)) {
+    if (patterns && (patterns->response || patterns->gamma.value_or(1.0) != 1.0)) {
         gamma = GammaCompensation::precompensate;
     }
     return patterns;

@@ -99,6 +99,8 @@ std::string light_json(const LightCalibration& light, const std::vector<std::str
                          {"gain_change", test.gain_change},
                          {"contrast", test.contrast},
                          {"phase_error_rad", test.phase_error_rad},
+                         {"bend_rad", test.bend_rad},
+                         {"works_as_shown", works_as_shown(test)},
                          {"depth_error_mm", nullptr},
                          {"pixels", test.pixels}};
         if (test.depth_error_mm) {

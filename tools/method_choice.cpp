@@ -56,7 +56,7 @@ std::string test_colours_of(const SimSettings& settings, MethodNeeds& needs) {
         needs.colour_works = false;
         return "failed, " + (found ? "the camera gave no colours" : found.error().message);
     }
-    needs.colour_works = found->light.colour->passed;
+    needs.colour_works = works_as_shown(*found->light.colour);
     return (found->light.colour->passed ? "passed, " : "failed, ") + found->light.colour->reason;
 }
 

@@ -126,6 +126,27 @@ double phase_error_rad(const Pattern& pattern, const CrosstalkFit& fit,
     return count > 0.0 ? std::sqrt(squares / count) : std::numbers::pi;
 }
 
+// That the colours' curves add to the phase of fringes, rms over a fringe.
+double bend_rad(const Pattern& pattern, const std::array<ResponseCurve, 3>& curves) {
+    TapSet taps;
+    if (!fit_taps(pattern.phase_rad, taps)) {
+        return std::numbers::pi;
+    }
+    constexpr int kSteps = 180;
+    double squares = 0.0;
+    for (int i = 0; i < kSteps; ++i) {
+        const double phase = 2.0 * std::numbers::pi * i / kSteps;
+        std::complex<double> seen = 0.0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double value = 0.5 + 0.5 * std::cos(phase + pattern.phase_rad[k]);
+            seen += std::complex<double>(taps.taps[k].re, taps.taps[k].im) * curves[k].light(value);
+        }
+        const double error = std::arg(seen * std::polar(1.0, -phase));
+        squares += error * error;
+    }
+    return std::sqrt(squares / kSteps);
+}
+
 // Of a phase in the middle of the image, at a hand's distance.
 std::optional<double> depth_error_mm(const ColourTestInput& input, double period_px,
                                      double error_rad) {
@@ -300,6 +321,7 @@ ColourTestResult test_colours(const ColourTestInput& input) {
     test.residual = residual_of(fit, pixels, curves);
     const Pattern& shortest = input.sequence.patterns[static_cast<std::size_t>(patterns.back())];
     test.phase_error_rad = phase_error_rad(shortest, fit, pixels, curves);
+    test.bend_rad = bend_rad(shortest, curves);
     test.depth_error_mm = depth_error_mm(input, shortest.period_px, test.phase_error_rad);
     const double agreement = static_cast<double>(fit.pixels) / static_cast<double>(pixels.size());
     test.reason = complaint(test, row_sums, agreement);
@@ -307,6 +329,11 @@ ColourTestResult test_colours(const ColourTestInput& input) {
     if (test.passed) {
         test.reason = "the colours can be told apart; their phase is good to " +
                       fixed(test.phase_error_rad, 3) + " rad";
+        if (!works_as_shown(test)) {
+            test.reason +=
+                ", once pictures are compensated: as they are the projector bends it by " +
+                fixed(test.bend_rad, 2) + " rad";
+        }
     }
     return result;
 }

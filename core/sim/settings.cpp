@@ -146,6 +146,11 @@ Result<void> SimSettings::validate() const {
     if (auto ok = xtrack::validate(patterns); !ok) {
         return ok.error();
     }
+    PatternSequence compensated = patterns;
+    compensated.response = projector.compensation;
+    if (auto ok = xtrack::validate(compensated); !ok) {
+        return Error{ok.error().code, "simulation: projector.compensation: " + ok.error().message};
+    }
     if (!(patterns.projector_size == rig.projector->size)) {
         return Error{ErrorCode::invalid_argument,
                      "simulation: projector_size of the patterns and of the rig differ"};

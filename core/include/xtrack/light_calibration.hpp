@@ -42,11 +42,25 @@ struct ColourSelfTest {
     /// coarse colours, take it
     double contrast = 1.0;
     double phase_error_rad = 0.0;  ///< of the shortest colour period, rms, noise included
-    /// The same in depth 600 mm away (or where the working volume is nearest to that); absent: no
-    /// rig
+    /// What the projector's response adds to it, rms, unless pictures are compensated by it
+    /// (GammaCompensation): what surfaces do to colours is then mistaken, and more is lost
+    double bend_rad = 0.0;
+    /// phase_error_rad in depth 600 mm away (or where the working volume is nearest to that);
+    /// absent: no rig
     std::optional<double> depth_error_mm;
     std::size_t pixels = 0;  ///< that were measured and agree
 };
+
+/// Bends from which colour fringes must be compensated, rad: a pixel of a period of 96.
+inline constexpr double kMostBend_rad = 0.05;
+
+/// True where colour fringes will do as they were shown: the test passed, and its response needs no
+/// compensation.
+/// @thread any
+/// @since 0.1
+[[nodiscard]] inline bool works_as_shown(const ColourSelfTest& test) noexcept {
+    return test.passed && test.bend_rad <= kMostBend_rad;
+}
 
 /// What is known of the light between a projector and a camera.
 /// @since 0.1

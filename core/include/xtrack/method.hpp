@@ -76,7 +76,7 @@ struct MethodNeeds {
     /// Camera images for which a pattern must be held: 1 where camera and projector are locked, 2
     /// where they run free.
     int hold_frames = 1;
-    /// The camera's colour self-test (ColourSelfTest::passed); empty: not made, colour is not
+    /// The camera's colour self-test (works_as_shown()); empty: not made, colour is not
     /// trusted with metric depth but still tried when nothing else will do.
     std::optional<bool> colour_works;
     bool metric = true;        ///< depth must be in mm

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -83,6 +84,9 @@ struct SimProjector {
     /// Of red, green, blue, 0..1: so much of the light follows value^2 (3 - 2 value) instead, the S
     /// of a picture mode
     std::array<double, 3> s_curve{};
+    /// What its driver believes the two to be, and makes up for: patterns are handed over as the
+    /// values whose light they want. Absent: as they are
+    std::optional<ProjectorResponse> compensation;
     double blur_px = 1.0;  ///< Gaussian sigma of defocus, projector pixels, 0..20
 };
 

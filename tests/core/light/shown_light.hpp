@@ -2,8 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -26,6 +28,26 @@ inline SimSettings light_on_a_wall(const char* preset = "ideal-60") {
     // A pattern of a projector that runs free is not seen whole each time: show all of it twice.
     const double shows = s.clocks.locked ? 1.0 : 2.0 * s.clocks.hold_frames;
     s.duration_s = shows * static_cast<double>(s.patterns.patterns.size()) / s.camera.frame_hz;
+    return s;
+}
+
+struct BentProjector {
+    const char* name;
+    double gamma;
+    std::array<double, 3> s_curve;
+};
+/// A power, and curves that are none and differ by colour.
+inline constexpr std::array<BentProjector, 3> kBentProjectors{
+    {{"gamma", 2.2, {}}, {"s_curves", 2.4, {0.3, 0.6, 0.9}}, {"dark_s", 1.6, {0.2, 0.1, 0.5}}}};
+
+inline std::string name_of_projector(const testing::TestParamInfo<BentProjector>& each) {
+    return each.param.name;
+}
+
+inline SimSettings bent_wall(const BentProjector& projector) {
+    SimSettings s = light_on_a_wall();
+    s.projector.gamma = projector.gamma;
+    s.projector.s_curve = projector.s_curve;
     return s;
 }
 

@@ -68,6 +68,7 @@ TEST_P(ColourScenes, GiveTheMatrix) {
         GetParam().name, error, test.condition, test.residual, test.gain_change, test.contrast,
         test.phase_error_rad, test.depth_error_mm.value_or(-1.0), test.pixels, test.reason.c_str());
     EXPECT_TRUE(test.passed) << test.reason;
+    EXPECT_EQ(works_as_shown(test), GetParam().gamma == 1.0) << test.bend_rad;
     EXPECT_LT(error, GetParam().matrix_error);
     EXPECT_LT(test.gain_change, 0.01);
     ASSERT_TRUE(test.depth_error_mm);
@@ -91,6 +92,19 @@ INSTANTIATE_TEST_SUITE_P(
                     Scene{"curves", "ideal-60", true, 2.4, {0.3, 0.6, 0.9}, 0.01},
                     Scene{"webcam", "webcam-30", false, 2.2, {}, 0.02}),
     [](const auto& each) { return std::string(each.param.name); });
+
+// The error of three steps at gamma 2.2 has an amplitude of 0.264 rad.
+TEST(ColourSelfTest, SaysWhatTheProjectorDoesToColourFringes) {
+    SimSettings s = colour_wall(some_crosstalk());
+    s.projector.gamma = 2.2;
+    const auto bent = test::calibrate(s).value();
+    EXPECT_NEAR(bent.colour->bend_rad, 0.264 / std::sqrt(2.0), 0.02);
+    EXPECT_THAT(bent.colour->reason, HasSubstr("once pictures are compensated"));
+    s.projector.compensation = bent.response->response;
+    const auto straight = test::calibrate(s).value();
+    EXPECT_LT(straight.colour->bend_rad, 0.01);
+    EXPECT_TRUE(works_as_shown(*straight.colour));
+}
 
 // A light part of the wall's colour: the camera sees it, and so does the matrix.
 TEST(ColourSelfTest, HoldsTheWallsColour) {

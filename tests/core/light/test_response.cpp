@@ -7,9 +7,6 @@
 
 #include <gmock/gmock.h>
 
-#include <xtrack/depth_decoder.hpp>
-#include <xtrack/phase_ripple.hpp>
-
 #include "tests/core/light/shown_light.hpp"
 
 namespace xtrack {
@@ -17,24 +14,11 @@ namespace {
 
 using testing::HasSubstr;
 
-struct Projector {
-    const char* name;
-    double gamma;
-    std::array<double, 3> s_curve;
-};
-class Projectors : public testing::TestWithParam<Projector> {
- protected:
-    static SimSettings settings() {
-        SimSettings s = test::light_on_a_wall();
-        s.projector.gamma = GetParam().gamma;
-        s.projector.s_curve = GetParam().s_curve;
-        return s;
-    }
-};
+class Projectors : public testing::TestWithParam<test::BentProjector> {};
 
 // A grey camera sees one mix of the colours: BT.601 luma, as the simulator's does.
 TEST_P(Projectors, AreMeasuredByAGreyCamera) {
-    const SimSettings s = settings();
+    const SimSettings s = test::bent_wall(GetParam());
     const auto found = test::calibrate(s);
     ASSERT_TRUE(found) << found.error().message;
     ASSERT_TRUE(found->response);
@@ -61,7 +45,7 @@ TEST_P(Projectors, AreMeasuredByAGreyCamera) {
 
 // With crosstalk and a wall that is not white.
 TEST_P(Projectors, AreMeasuredColourByColour) {
-    SimSettings s = settings();
+    SimSettings s = test::bent_wall(GetParam());
     s.camera.colour = true;
     Mat3d rgb;
     rgb << 0.86, 0.12, 0.02, 0.08, 0.84, 0.08, 0.01, 0.13, 0.86;
@@ -80,96 +64,8 @@ TEST_P(Projectors, AreMeasuredColourByColour) {
     EXPECT_LT(worst, 0.005);
 }
 
-struct Seen {
-    double rms_mm = 0.0;
-    double ripple_rad = 0.0;
-};
-
-// Depth of the wall, and the ripple of the shorter fringes, by the whole camera: of a quarter of
-// its pixels they would be blurred.
-Seen decode(SimSettings s, Method method, int frames,
-            const std::optional<ProjectorResponse>& response) {
-    s.rig.camera = SimSettings::preset("ideal-60")->rig.camera;
-    s.patterns = method_sequence(method, s.rig, s.patterns.axis).value();
-    s.duration_s = frames / s.camera.frame_hz;
-    PatternSequence believed = s.patterns;
-    believed.response = response;
-    DecodeSettings settings;
-    settings.motion = MotionHandling::off;
-    settings.keep_maps = true;
-    auto decoder = DepthDecoder::create(s.rig, believed, s.rig.camera.size, settings).value();
-    const auto rig = test::make_rig(s);
-    for (int i = 0; i < frames; ++i) {
-        EXPECT_NE(decoder.push(rig->next({}).frame).state, DecodeState::rejected);
-    }
-    const SimTruth& truth = rig->truth();
-    Seen seen;
-    double squares = 0.0;
-    double count = 0.0;
-    for (int y = 0; y < truth.depth.height(); ++y) {
-        for (int x = 0; x < truth.depth.width(); ++x) {
-            const int error = static_cast<int>(decoder.depth().depth.at(x, y)) -
-                              static_cast<int>(truth.depth.at(x, y));
-            if (decoder.depth().depth.at(x, y) != 0) {
-                squares += 0.01 * error * error;
-                count += 1.0;
-            }
-        }
-    }
-    seen.rms_mm = std::sqrt(squares / count);
-    const auto ripple = measure_ripple(decoder.phase(), 3);
-    EXPECT_TRUE(ripple) << ripple.error().message;
-    seen.ripple_rad = ripple ? ripple->gamma_rad : 0.0;
-    return seen;
-}
-
-TEST_P(Projectors, NoLongerBendFringesOnceMeasured) {
-    const SimSettings s = settings();
-    const auto found = test::calibrate(s);
-    ASSERT_TRUE(found) << found.error().message;
-    SimSettings straight = s;
-    straight.projector.gamma = 1.0;
-    straight.projector.s_curve = {};
-    const Seen best = decode(straight, Method::dual, 6, std::nullopt);
-    const Seen before = decode(s, Method::dual, 6, std::nullopt);
-    const Seen after = decode(s, Method::dual, 6, found->response->response);
-    std::printf(
-        "%s: depth RMS %.2f -> %.2f mm (linear projector %.2f), ripple at three times the phase "
-        "%.4f -> %.4f rad\n",
-        GetParam().name, before.rms_mm, after.rms_mm, best.rms_mm, before.ripple_rad,
-        after.ripple_rad);
-    EXPECT_LT(after.ripple_rad, 0.007);
-    EXPECT_GT(before.ripple_rad, 8.0 * after.ripple_rad);
-    EXPECT_GT(before.rms_mm, 2.0 * after.rms_mm);
-    EXPECT_LT(after.rms_mm, 1.3 * best.rms_mm);
-}
-
-// Two colour patterns; what surfaces do to colours is learnt meanwhile.
-TEST_P(Projectors, BendColourFringesLessOnceMeasured) {
-    SimSettings s = settings();
-    s.camera.colour = true;
-    const auto found = test::calibrate(s);
-    ASSERT_TRUE(found) << found.error().message;
-    SimSettings straight = s;
-    straight.projector.gamma = 1.0;
-    straight.projector.s_curve = {};
-    const Seen best = decode(straight, Method::rgb, 12, std::nullopt);
-    const Seen before = decode(s, Method::rgb, 12, std::nullopt);
-    const Seen after = decode(s, Method::rgb, 12, found->response->response);
-    std::printf("%s, colour fringes: depth RMS %.2f -> %.2f mm (linear projector %.2f)\n",
-                GetParam().name, before.rms_mm, after.rms_mm, best.rms_mm);
-    EXPECT_LT(after.rms_mm, before.rms_mm);
-}
-
-INSTANTIATE_TEST_SUITE_P(Simulated, Projectors,
-                         testing::Values(Projector{"gamma 2.2", 2.2, {}},
-                                         Projector{"S-curves", 2.4, {0.3, 0.6, 0.9}},
-                                         Projector{"dark S", 1.6, {0.2, 0.1, 0.5}}),
-                         [](const auto& each) {
-                             std::string name = each.param.name;
-                             std::erase_if(name, [](char c) { return std::isalnum(c) == 0; });
-                             return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Simulated, Projectors, testing::ValuesIn(test::kBentProjectors),
+                         test::name_of_projector);
 
 TEST(LightCalibrator, SaysWhatImagesLack) {
     const auto message = [](const SimSettings& s, const std::function<void(Frame&)>& disturb = {}) {
