@@ -30,9 +30,10 @@ constexpr double kMostGainChange = 0.05;
 constexpr double kAlikeGains = 0.03;
 // 3 px of 96, 4 mm at a hand's distance in the rigs of the documentation; hands need 5 to 10 mm
 constexpr double kMostPhaseError_rad = 0.2;
-constexpr double kMostResidual = 0.06;  // share of full light
-constexpr double kLeastRange = 8.0;     // grey levels that full light adds in a channel
-constexpr double kLeastContrast = 0.5;  // that short fringes must keep
+constexpr double kMostResidual = 0.06;    // share of full light
+constexpr double kLeastRange = 8.0;       // grey levels that full light adds in a channel
+constexpr double kLeastPixelRange = 1.0;  // the same of one pixel, which counts by it
+constexpr double kLeastContrast = 0.5;    // that short fringes must keep
 constexpr std::size_t kLeastPixels = 500;
 constexpr double kLeastAgreement = 0.5;  // of the pixels
 
@@ -56,7 +57,9 @@ void add_pixels(const ColourTestInput& input, int pattern, std::size_t image, do
     const Pattern& shown = input.sequence.patterns[static_cast<std::size_t>(pattern)];
     for (std::size_t n = 0; n < input.pixels.size(); ++n) {
         const auto x_px = static_cast<double>(input.coordinate_px[n]);
-        if (!std::isfinite(x_px)) {
+        const auto dark = [](const LightRange& full) { return full.range < kLeastPixelRange; };
+        if (!std::isfinite(x_px) ||
+            std::any_of(input.ranges[n].begin(), input.ranges[n].end(), dark)) {
             continue;
         }
         ColourPixel& pixel = pixels.emplace_back();
@@ -217,7 +220,9 @@ std::string complaint(const ColourSelfTest& test, const Vec3d& row_sums, double 
         const bool alike = row_sums.maxCoeff() - row_sums.minCoeff() < kAlikeGains;
         return std::string("the camera's ") + (alike ? "exposure or gain" : "white balance") +
                " changed by " + percent(test.gain_change) +
-               " between the white and the colour images; lock it";
+               " between the white and the colour images, or it has a gamma of its own; lock it, "
+               "and "
+               "switch that off";
     }
     if (!(test.condition < kMostCondition)) {
         return "the camera's colours are too alike (condition " +

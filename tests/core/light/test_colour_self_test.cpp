@@ -158,6 +158,28 @@ TEST(ColourSelfTest, NoticesAutomaticWhiteBalanceAndExposure) {
     EXPECT_THAT(verdict(s, gains(1.0, 1.0, 1.0)), HasSubstr("passed"));
 }
 
+// Many webcams brighten the dark: what they add up is then no longer light.
+TEST(ColourSelfTest, NoticesACameraThatIsNotLinear) {
+    const auto with_gamma = [](double gamma) {
+        return [gamma](Frame& frame) {
+            for (int y = 0; y < frame.height(); ++y) {
+                for (int x = 0; x < frame.pixels.width(); ++x) {
+                    std::uint8_t& value = frame.pixels.at(x, y);
+                    value = static_cast<std::uint8_t>(
+                        std::lround(254.0 * std::pow(value / 255.0, 1.0 / gamma)));
+                }
+            }
+        };
+    };
+    const SimSettings s = colour_wall(strong_crosstalk());
+    EXPECT_THAT(verdict(s, with_gamma(2.2)), HasSubstr("it has a gamma of its own"));
+    // A little of it passes, and costs a little.
+    const auto slight = test::calibrate(s, with_gamma(1.3)).value();
+    EXPECT_TRUE(slight.colour->passed) << slight.colour->reason;
+    EXPECT_LT(worst_of_balanced(slight.colour->camera_from_projector_rgb, strong_crosstalk()),
+              0.03);
+}
+
 TEST(ColourSelfTest, NoticesTooLittleLight) {
     SimSettings s = colour_wall(some_crosstalk());
     s.rig.camera_from_projector_rgb->row(2) *= 0.1;
