@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // `calibrate` as a user meets it: pictures out, a recording in, files updated.
+#include <cmath>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -93,6 +95,43 @@ TEST_F(CalibrateLight, UpdatesTheFilesOfAFolder) {
     EXPECT_EQ(wrong.status, 2);
     EXPECT_TRUE(is_one_line_message(wrong.err)) << wrong.err;
     EXPECT_EQ(text_of(rig / "notes.txt"), "x");
+}
+
+// Its own response is in pattern.yaml: the fringes in between are decoded with it.
+TEST_F(CalibrateLight, IsUsedByDecode) {
+    SimSettings s = small_settings();
+    s.user.visible_body = false;
+    s.script.clear();
+    s.projector.gamma = 2.2;
+    s.patterns = method_sequence(Method::dual, s.rig, s.patterns.axis).value();
+    s.duration_s = 6.0 / s.camera.frame_hz;
+    s.patterns.gamma.reset();
+    PatternSequence known = s.patterns;
+    ProjectorResponse& response = known.response.emplace();
+    for (int i = 0; i <= 51; ++i) {
+        for (auto& light : response.light) {
+            light.push_back(std::pow(i / 51.0, 2.2));
+        }
+    }
+    auto writer = RecordingWriter::create(recording_, {s.rig, known}).value();
+    const auto rig = make_rig(s);
+    for (auto item = rig->next({}); item.status == SourceStatus::ok; item = rig->next({})) {
+        ASSERT_TRUE(writer.add(*item.frame));
+    }
+    ASSERT_TRUE(writer.close());
+    const auto ripple = [&](const char* out, const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{"decode", recording_.string(), "--json", "--out",
+                                           (folder_.path() / out).string()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Outcome outcome = xtrack_command(arguments);
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        return json::parse(outcome.out);
+    };
+    const json with = ripple("with", {});
+    const json without = ripple("without", {"--gamma", "1"});
+    EXPECT_THAT(with["method"].get<std::string>(), HasSubstr("measured response"));
+    EXPECT_LT(4.0 * with["frames"][0]["ripple"]["gamma_rad"].get<double>(),
+              without["frames"][0]["ripple"]["gamma_rad"].get<double>());
 }
 
 // Colours that are not measured well are not written.
