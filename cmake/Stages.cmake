@@ -2,7 +2,7 @@
 # here is the one place that says so. check_stages.cmake refuses an include that goes against it.
 set(XTRACK_STAGES
     core/base core/pattern core/project core/capture core/sim core/decode core/unwrap core/depth
-    core/calibrate core/pipeline
+    core/light core/calibrate core/pipeline
     gestures/segment gestures/track gestures/recognise gestures/session gestures/hid
     gestures/pipeline)
 
@@ -15,6 +15,7 @@ set(XTRACK_HEADERS_core/capture null_source recording)
 set(XTRACK_HEADERS_core/sim sim)
 set(XTRACK_HEADERS_core/decode decode_settings phase_ripple)
 set(XTRACK_HEADERS_core/unwrap relative_depth)
+set(XTRACK_HEADERS_core/light light_calibration)
 set(XTRACK_HEADERS_core/pipeline depth_decoder paper_decoder)
 set(XTRACK_HEADERS_gestures/segment hand hand_region tracker_settings)
 set(XTRACK_HEADERS_gestures/track hand_source hand_tracker joint_recording

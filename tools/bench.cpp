@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -18,6 +17,7 @@
 #include "tools/bench/report.hpp"
 #include "tools/bench/scene.hpp"
 #include "tools/commands.hpp"
+#include "tools/image_size.hpp"
 #include "tools/progress.hpp"
 #include "tools/stream.hpp"
 
@@ -38,21 +38,6 @@ struct BenchOptions {
     std::vector<std::string> methods;
     std::vector<std::string> parts{"speeds", "fastest"};
 };
-
-// "640x480"
-std::optional<Size> parse_size(const std::string& text) {
-    Size size;
-    const char* const end = text.data() + text.size();
-    const auto width = std::from_chars(text.data(), end, size.width);
-    if (width.ec != std::errc{} || width.ptr == end || *width.ptr != 'x') {
-        return std::nullopt;
-    }
-    const auto height = std::from_chars(width.ptr + 1, end, size.height);
-    if (height.ec != std::errc{} || height.ptr != end || !is_image_size(size)) {
-        return std::nullopt;
-    }
-    return size;
-}
 
 // Every contender with every instruction set.
 std::vector<bench::Contender> with_each(const std::vector<bench::InstructionSet>& sets,

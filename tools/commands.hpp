@@ -8,6 +8,7 @@ namespace xtrack::tools {
 // One function a subcommand, in the file of its name: adds the command to `app`; when it runs it
 // sets `exit_status` (0 done, 1 failed, 2 wrong usage).
 void add_bench(CLI::App& app, int& exit_status);
+void add_calibrate(CLI::App& app, int& exit_status);
 void add_decode(CLI::App& app, int& exit_status);
 void add_demo(CLI::App& app, int& exit_status);
 void add_eval(CLI::App& app, int& exit_status);

@@ -193,6 +193,8 @@ class DecodeRun {
         if (options_.gamma) {
             method += fmt::format("; gamma {:.2f}{}", *patterns_.gamma,
                                   options_.gamma == "auto" ? " from the fringes" : "");
+        } else if (patterns_.response) {
+            method += "; the measured response of pattern.yaml";
         }
         return options_.json ? json_of(method, chosen_.note, reports_)
                              : table_of(method, chosen_.note, reports_);

@@ -93,6 +93,7 @@ Result<PatternSequence> with_gamma(const RecordingReader& recording,
     if (!wanted) {
         return patterns;
     }
+    patterns.response.reset();  // it would go before the gamma
     if (*wanted != "auto") {
         const auto value = number(*wanted);
         if (!value) {

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/method_choice.hpp"
 
+#include <utility>
+
+#include "tools/light_source.hpp"
+
 namespace xtrack::tools {
 
 namespace {
@@ -14,6 +18,10 @@ std::string known_methods() {
 }
 
 }  // namespace
+
+bool is_simulator(const std::string& source) {
+    return source == "sim" || source.starts_with("sim:");
+}
 
 Result<SimSettings> preset_of(const std::string& source) {
     if (source == "sim") {
@@ -39,11 +47,26 @@ MethodNeeds needs_of(const SimSettings& settings, const GestureSettings& gesture
     return needs;
 }
 
-Result<MethodVerdict> show_method(const std::string& name, const GestureSettings& gestures,
-                                  SimSettings& settings) {
+std::string test_colours_of(const SimSettings& settings, MethodNeeds& needs) {
+    if (!needs.colour) {
+        return {};
+    }
+    const auto found = light_of_simulation(settings);
+    if (!found || !found->light.colour) {
+        needs.colour_works = false;
+        return "failed, " + (found ? "the camera gave no colours" : found.error().message);
+    }
+    needs.colour_works = works_as_shown(*found->light.colour);
+    return (found->light.colour->passed ? "passed, " : "failed, ") + found->light.colour->reason;
+}
+
+Result<ShownMethod> show_method(const std::string& name, const GestureSettings& gestures,
+                                SimSettings& settings) {
     MethodNeeds needs = needs_of(settings, gestures);
     MethodVerdict verdict;
+    std::string colours;
     if (name == "auto") {
+        colours = test_colours_of(settings, needs);
         auto chosen = choose_method(needs);
         if (!chosen) {
             return chosen.error();
@@ -70,7 +93,7 @@ Result<MethodVerdict> show_method(const std::string& name, const GestureSettings
     const auto gamma = settings.patterns.gamma;
     settings.patterns = *std::move(sequence);
     settings.patterns.gamma = gamma;
-    return verdict;
+    return ShownMethod{std::move(verdict), std::move(colours)};
 }
 
 }  // namespace xtrack::tools

@@ -23,9 +23,13 @@ struct MethodsOptions {
     bool json = false;
 };
 
-void print_text(const MethodNeeds& needs, const Result<MethodVerdict>& chosen) {
+void print_text(const MethodNeeds& needs, const std::string& colours,
+                const Result<MethodVerdict>& chosen) {
     fmt::print("{} camera, {:g} images a second, each pattern held for {}\n",
                needs.colour ? "colour" : "grey", needs.frame_hz, needs.hold_frames);
+    if (!colours.empty()) {
+        fmt::print("colour self-test: {}\n", colours);
+    }
     fmt::print("all of a hand of {:.2f} m/s must be seen{}\n\n", needs.hand_mmps / 1000.0,
                needs.metric ? ", in mm" : "");
     fmt::print("{:<11}{:>7}  {:<8}{:<9}{}\n", "method", "images", "changes", "depth", "here");
@@ -42,11 +46,14 @@ void print_text(const MethodNeeds& needs, const Result<MethodVerdict>& chosen) {
     }
 }
 
-void print_json(const MethodNeeds& needs, const Result<MethodVerdict>& chosen) {
+void print_json(const MethodNeeds& needs, const std::string& colours,
+                const Result<MethodVerdict>& chosen) {
     using nlohmann::json;
     json out = {{"colour", needs.colour},           {"frame_hz", needs.frame_hz},
                 {"hold_frames", needs.hold_frames}, {"hand_mmps", needs.hand_mmps},
                 {"metric", needs.metric},           {"methods", json::array()}};
+    out["colour_works"] = needs.colour_works ? json(*needs.colour_works) : json();
+    out["colour_self_test"] = colours.empty() ? json() : json(colours);
     for (const MethodInfo& one : methods()) {
         const MethodVerdict verdict = judge(one.method, needs);
         out["methods"].push_back({{"name", one.name},
@@ -91,8 +98,9 @@ void add_methods(CLI::App& app, int& exit_status) {
         MethodNeeds needs = needs_of(*settings, gestures);
         needs.static_only = options->static_only;
         needs.metric = !options->relative;
+        const std::string colours = test_colours_of(*settings, needs);
         const auto chosen = choose_method(needs);
-        options->json ? print_json(needs, chosen) : print_text(needs, chosen);
+        options->json ? print_json(needs, colours, chosen) : print_text(needs, colours, chosen);
         exit_status = chosen ? 0 : 1;
     });
 }

@@ -24,10 +24,6 @@ struct RunOptions {
     StreamOptions stream;
 };
 
-bool is_simulator(const std::string& source) {
-    return source == "sim" || source.starts_with("sim:");
-}
-
 /// `sim` with a seed is another person on another day; without one it is the same as everywhere.
 Result<Session> open(const RunOptions& run, SessionOptions options) {
     if (run.seed == 0 && run.method.empty()) {
@@ -53,10 +49,14 @@ Result<Session> open(const RunOptions& run, SessionOptions options) {
         if (!shown) {
             return shown.error();
         }
-        if (!info(shown->method).metric) {
+        if (!shown->colours.empty()) {
+            fmt::print(stderr, "colour self-test: {}\n", shown->colours);
+        }
+        if (!info(shown->verdict.method).metric) {
             options.method = DecodeMethod::paper;
         }
-        fmt::print(stderr, "method {}: {}\n", info(shown->method).name, shown->reason);
+        fmt::print(stderr, "method {}: {}\n", info(shown->verdict.method).name,
+                   shown->verdict.reason);
     }
     auto rig = SimulatedRig::create(*settings);
     if (!rig) {

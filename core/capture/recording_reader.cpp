@@ -206,7 +206,8 @@ std::span<const RecordingEntry> RecordingReader::entries() const noexcept {
 }
 Size RecordingReader::image_size() const noexcept { return content_->image_size; }
 
-Result<void> RecordingReader::read_frame(std::size_t index, Frame& out) const {
+Result<void> RecordingReader::read_frame(std::size_t index, Frame& out,
+                                         ColourReading colours) const {
     const Content& c = *content_;
     if (c.kind != RecordingKind::fringe) {
         return unsupported(c.folder, "holds no fringes (no pattern.yaml); decode needs them");
@@ -217,10 +218,17 @@ Result<void> RecordingReader::read_frame(std::size_t index, Frame& out) const {
     if (!bytes) {
         return bytes.error();
     }
-    const bool colour = entry.pattern == kUnknownPattern
-                            ? c.any_colour
-                            : c.patterns.patterns[static_cast<std::size_t>(entry.pattern)].kind ==
-                                  PatternKind::rgb_sine;
+    bool colour = entry.pattern == kUnknownPattern
+                      ? c.any_colour
+                      : c.patterns.patterns[static_cast<std::size_t>(entry.pattern)].kind ==
+                            PatternKind::rgb_sine;
+    if (colours == ColourReading::as_stored) {
+        const auto info = capture::peek_image(*bytes, file.string());
+        if (!info) {
+            return info.error();
+        }
+        colour = info->channels > 2;  // two are grey and its opacity
+    }
     out.status = FrameStatus::ok;
     out.format = colour ? PixelFormat::bgr8 : PixelFormat::grey8;
     out.stamp = entry.stamp;

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/capture/yaml_file.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <new>
 #include <utility>
 
 #include "core/base/setting_up.hpp"
 #include "core/capture/yaml_reader.hpp"
+#include "core/pattern/response_curve.hpp"
 
 namespace xtrack::capture {
 
@@ -248,6 +250,23 @@ Result<RigFile> read_rig(const YamlMap& map) {
     return file;
 }
 
+// One colour calls for all of them.
+Result<void> read_response(const YamlMap& map, PatternSequence& s) {
+    if (std::none_of(kResponseFields.begin(), kResponseFields.end(),
+                     [&](const char* key) { return map.has(key); })) {
+        return {};
+    }
+    ProjectorResponse& response = s.response.emplace();
+    for (std::size_t c = 0; c < kResponseFields.size(); ++c) {
+        auto light = map.numbers(kResponseFields[c], kMinResponseSteps, kMaxResponseSteps);
+        if (!light) {
+            return light.error();
+        }
+        response.light[c] = *std::move(light);
+    }
+    return {};
+}
+
 Result<PatternSequence> read_patterns(const YamlMap& map) {
     PatternSequence s;
     const auto axis = map.word("axis");
@@ -269,6 +288,9 @@ Result<PatternSequence> read_patterns(const YamlMap& map) {
             return gamma.error();
         }
         s.gamma = *gamma;
+    }
+    if (auto ok = read_response(map, s); !ok) {
+        return ok.error();
     }
     const auto entries = map.maps("sequence", kMaxPatterns);
     if (!entries) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/text.hpp"
 #include "core/capture/yaml_file.hpp"
+#include "core/pattern/response_curve.hpp"
 
 namespace xtrack::capture {
 
@@ -89,6 +90,15 @@ std::string patterns_text(const PatternSequence& s) {
     text += size_text("projector_size", s.projector_size);
     if (s.gamma) {
         text += "gamma: " + real_text(*s.gamma) + "\n";
+    }
+    if (s.response) {
+        for (std::size_t c = 0; c < kResponseFields.size(); ++c) {
+            std::string list;
+            for (const double light : s.response->light[c]) {
+                list += (list.empty() ? " " : ", ") + real_text(light);
+            }
+            text += std::string(kResponseFields[c]) + ": [" + list + " ]\n";
+        }
     }
     text += "sequence:\n";
     for (const Pattern& p : s.patterns) {

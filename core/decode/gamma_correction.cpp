@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/decode/gamma_correction.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -14,11 +15,11 @@ constexpr int kIterations = 30;
 
 double wrapped(double angle) { return std::remainder(angle, 2.0 * kPi); }
 
-double measured_phase(const TapSet& taps, std::span<const double> phases, double gamma,
-                      double phase) {
+double measured_phase(const TapSet& taps, std::span<const double> phases,
+                      std::span<const ResponseCurve> responses, double phase) {
     std::complex<double> z = 0.0;
     for (std::size_t n = 0; n < phases.size(); ++n) {
-        const double light = std::pow(0.5 + 0.5 * std::cos(phase + phases[n]), gamma);
+        const double light = responses[n].light(0.5 + 0.5 * std::cos(phase + phases[n]));
         z += light * std::complex<double>(taps.taps[n].re, taps.taps[n].im);
     }
     return std::arg(z);
@@ -27,8 +28,9 @@ double measured_phase(const TapSet& taps, std::span<const double> phases, double
 }  // namespace
 
 GammaCorrection::GammaCorrection(const TapSet& taps, std::span<const double> phases_rad,
-                                 double gamma) {
-    if (gamma == 1.0) {
+                                 std::span<const ResponseCurve> responses) {
+    if (std::all_of(responses.begin(), responses.end(),
+                    [](const ResponseCurve& one) { return one.linear(); })) {
         return;
     }
     correction_rad_.resize(kEntries + 1);
@@ -38,11 +40,15 @@ GammaCorrection::GammaCorrection(const TapSet& taps, std::span<const double> pha
         // Damped, because near the steepest part the plain fixed point overshoots.
         constexpr double kDamping = 0.7;
         for (int n = 0; n < kIterations; ++n) {
-            phase += kDamping * wrapped(seen - measured_phase(taps, phases_rad, gamma, phase));
+            phase += kDamping * wrapped(seen - measured_phase(taps, phases_rad, responses, phase));
         }
         correction_rad_[i] = static_cast<float>(wrapped(phase - seen));
     }
 }
+
+GammaCorrection::GammaCorrection(const TapSet& taps, std::span<const double> phases_rad,
+                                 const ResponseCurve& response)
+    : GammaCorrection(taps, phases_rad, std::vector<ResponseCurve>(phases_rad.size(), response)) {}
 
 void GammaCorrection::apply(int count, float* phase_rad) const noexcept {
     if (identity()) {

@@ -5,12 +5,13 @@
 #include <vector>
 
 #include "core/decode/taps.hpp"
+#include "core/pattern/response_curve.hpp"
 
 namespace xtrack {
 
-/// Subtracts the phase error of a projector with a known power-law response.
+/// Subtracts the phase error of a projector with a known response.
 ///
-/// light = value^gamma turns a sine into a sum of harmonics whose ratios depend on gamma alone;
+/// A response turns a sine into a sum of harmonics whose ratios depend on the response alone;
 /// ambient light adds a constant and albedo a factor, so the phase that a tap set measures is a
 /// function of the true phase. It is tabulated here and inverted. Correcting grey values instead
 /// would need the ambient light of each pixel.
@@ -20,8 +21,13 @@ class GammaCorrection {
     GammaCorrection() = default;
 
     /// @param taps with the phases they belong to: the correction is that of this combination
-    /// @param gamma > 0; 1 corrects nothing
-    GammaCorrection(const TapSet& taps, std::span<const double> phases_rad, double gamma);
+    /// @param responses one for each phase: of the colour that shows it; linear ones correct
+    /// nothing
+    GammaCorrection(const TapSet& taps, std::span<const double> phases_rad,
+                    std::span<const ResponseCurve> responses);
+    /// The same where all phases are shown alike.
+    GammaCorrection(const TapSet& taps, std::span<const double> phases_rad,
+                    const ResponseCurve& response);
 
     /// True when apply() changes nothing.
     [[nodiscard]] bool identity() const noexcept { return correction_rad_.empty(); }

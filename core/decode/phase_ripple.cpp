@@ -213,7 +213,7 @@ Result<double> estimate_gamma(const PhaseMap& map, std::span<const double> phase
         return enough.error();
     }
     const auto ripple_with = [&](double log_gamma) {
-        const GammaCorrection correction(*taps, phases_rad, std::exp(log_gamma));
+        const GammaCorrection correction(*taps, phases_rad, ResponseCurve(std::exp(log_gamma)));
         Lines corrected = lines;
         for (std::vector<float>& line : corrected) {
             correction.apply(static_cast<int>(line.size()), line.data());

@@ -123,6 +123,20 @@ Result<PatternSequence> method_sequence(Method method, const Rig& rig, Axis axis
     return s;
 }
 
+PatternSequence light_sequence(Axis axis, Size projector_size, int levels) {
+    const double whole_px = axis == Axis::x ? projector_size.width : projector_size.height;
+    PatternSequence s = dual_sequence(axis, projector_size, whole_px, whole_px / kRatio);
+    const PatternSequence colour =
+        rgb_sequence(axis, projector_size, {8.0 * kFineColour_px, kFineColour_px});
+    s.patterns.insert(s.patterns.end(), colour.patterns.begin(), colour.patterns.end());
+    std::vector<Pattern> ramp;
+    for (int i = 0; i < levels; ++i) {
+        ramp.push_back(flat(static_cast<double>(i) / std::max(levels - 1, 1)));
+    }
+    s.patterns.insert(s.patterns.begin(), ramp.begin(), ramp.end());
+    return s;
+}
+
 MethodVerdict judge(Method method, const MethodNeeds& needs) {
     const MethodInfo& about = info(method);
     MethodVerdict verdict;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -8,6 +9,8 @@
 #include <vector>
 
 #include <xtrack/pattern.hpp>
+
+#include "core/pattern/response_curve.hpp"
 
 namespace xtrack {
 
@@ -26,14 +29,15 @@ double gray_code_bit(const Pattern& p, double x_px) noexcept {
 
 // One value for each projector pixel of the coded axis and channel, in the order of the bytes.
 std::vector<std::uint8_t> render_profile(const PatternSequence& s, const Pattern& p, int channels,
-                                         double exponent) {
+                                         const std::array<ResponseCurve, 3>& of_colour) {
     const int length = s.coded_length_px();
     std::vector<std::uint8_t> values;
     values.reserve(static_cast<std::size_t>(length) * static_cast<std::size_t>(channels));
     for (int x = 0; x < length; ++x) {
         for (int c = 0; c < channels; ++c) {
-            const double light = intensity(p, x, channels - 1 - c);  // bytes: blue, green, red
-            const double value = exponent == 1.0 ? light : std::pow(light, exponent);
+            const int colour = channels - 1 - c;  // bytes: blue, green, red
+            const double value =
+                of_colour[static_cast<std::size_t>(colour)].value(intensity(p, x, colour));
             values.push_back(static_cast<std::uint8_t>(std::lround(value * kFullLight)));
         }
     }
@@ -68,21 +72,26 @@ Result<PixelFormat> render_pattern(const PatternSequence& s, int index, Image<st
                                                       "; give 0 to " +
                                                       std::to_string(s.patterns.size() - 1)};
     }
-    double exponent = 1.0;
+    std::array<ResponseCurve, 3> of_colour;
+    bool colours_differ = false;
     if (gamma == GammaCompensation::precompensate) {
-        if (!s.gamma) {
+        if (!s.gamma && !s.response) {
             return Error{ErrorCode::unsupported,
-                         "gamma is unknown; measure the projector's response and set it, or "
-                         "render without compensation"};
+                         "gamma and response are unknown; measure the projector's response and set "
+                         "it, or render without compensation"};
         }
-        exponent = 1.0 / *s.gamma;
+        for (int c = 0; c < 3; ++c) {
+            of_colour[static_cast<std::size_t>(c)] = colour_response(s, c);
+        }
+        colours_differ = s.response && (s.response->light[1] != s.response->light[0] ||
+                                        s.response->light[2] != s.response->light[0]);
     }
 
     const Pattern& p = s.patterns[static_cast<std::size_t>(index)];
     const PixelFormat format =
-        p.kind == PatternKind::rgb_sine ? PixelFormat::bgr8 : PixelFormat::grey8;
+        p.kind == PatternKind::rgb_sine || colours_differ ? PixelFormat::bgr8 : PixelFormat::grey8;
     const int channels = format == PixelFormat::bgr8 ? 3 : 1;
-    const std::vector<std::uint8_t> profile = render_profile(s, p, channels, exponent);
+    const std::vector<std::uint8_t> profile = render_profile(s, p, channels, of_colour);
 
     const auto row_bytes = static_cast<std::size_t>(s.projector_size.width * channels);
     out.resize(s.projector_size.width * channels, s.projector_size.height);

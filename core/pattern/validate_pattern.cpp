@@ -2,8 +2,11 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include <xtrack/pattern.hpp>
+
+#include "core/pattern/response_curve.hpp"
 
 namespace xtrack {
 
@@ -83,6 +86,32 @@ Result<void> check_pattern(const std::string& field, const Pattern& p) {
                "use sine, rgb_sine, gray_code, ramp or flat");
 }
 
+Result<void> check_response(const ProjectorResponse& response) {
+    const std::size_t steps = response.light[0].size();
+    for (std::size_t c = 0; c < kResponseFields.size(); ++c) {
+        const std::vector<double>& light = response.light[c];
+        const std::string field = kResponseFields[c];
+        if (light.size() < kMinResponseSteps || light.size() > kMaxResponseSteps ||
+            light.size() != steps) {
+            return bad(field, std::to_string(light.size()) + " numbers long",
+                       "give as many for each colour, " + std::to_string(kMinResponseSteps) +
+                           " to " + std::to_string(kMaxResponseSteps));
+        }
+        // NaN fails one of these, wherever it stands.
+        if (light.front() != 0.0 || light.back() != 1.0) {
+            return bad(field, "from " + text_of(light.front()) + " to " + text_of(light.back()),
+                       "begin with 0 (no light) and end with 1 (full light)");
+        }
+        for (std::size_t i = 1; i < steps; ++i) {
+            if (!(light[i] >= light[i - 1])) {
+                return bad(field + "[" + std::to_string(i) + "]", text_of(light[i]),
+                           "give light that never falls from step to step");
+            }
+        }
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<void> validate(const PatternSequence& s) {
@@ -98,6 +127,11 @@ Result<void> validate(const PatternSequence& s) {
         return bad("gamma", text_of(*s.gamma),
                    "give a number from " + text_of(kMinGamma) + " to " + text_of(kMaxGamma) +
                        ", or leave it out if it is not known");
+    }
+    if (s.response) {
+        if (auto ok = check_response(*s.response); !ok) {
+            return ok;
+        }
     }
     if (s.patterns.empty() || s.patterns.size() > kMaxPatterns) {
         return bad("sequence", std::to_string(s.patterns.size()) + " patterns long",

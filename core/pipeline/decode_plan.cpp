@@ -46,7 +46,13 @@ Result<void> complete(SinePlan& plan, const PatternSequence& sequence) {
                          " px: " + taps.error().message);
     }
     plan.newest_taps = *taps;
-    plan.gamma = GammaCorrection(plan.newest_taps, plan.phases_rad, sequence.gamma.value_or(1.0));
+    std::vector<ResponseCurve> responses;
+    for (std::size_t n = 0; n < plan.phases_rad.size(); ++n) {
+        responses.push_back(plan.kind == PeriodKind::colour
+                                ? colour_response(sequence, static_cast<int>(n))
+                                : grey_response(sequence));
+    }
+    plan.gamma = GammaCorrection(plan.newest_taps, plan.phases_rad, responses);
     return {};
 }
 
@@ -219,7 +225,7 @@ Result<DecodePlan> DecodePlan::create(const PatternSequence& sequence,
     }
     DecodePlan plan;
     plan.axis = sequence.axis;
-    plan.gamma = sequence.gamma.value_or(1.0);
+    plan.grey = grey_response(sequence);
     plan.coded_length_px = sequence.coded_length_px();
     plan.pattern_count = static_cast<int>(sequence.patterns.size());
     auto sines = collect_sines(sequence);

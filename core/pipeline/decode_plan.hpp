@@ -11,6 +11,7 @@
 
 #include "core/decode/gamma_correction.hpp"
 #include "core/decode/taps.hpp"
+#include "core/pattern/response_curve.hpp"
 #include "core/unwrap/gray_code.hpp"
 
 namespace xtrack {
@@ -52,7 +53,7 @@ struct DecodePlan {
     Axis axis = Axis::x;
     int coded_length_px = 0;
     int pattern_count = 0;
-    double gamma = 1.0;           ///< of the projector, as far as it is known
+    ResponseCurve grey;           ///< of the projector, as far as it is known
     std::vector<SinePlan> sines;  ///< longest period first
     std::optional<CyclePlan> cycle;
     std::optional<GrayPlan> gray;

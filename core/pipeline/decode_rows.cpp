@@ -112,8 +112,8 @@ void DepthDecoder::Impl::decode_ramp_row(std::size_t sine, int y, const RowOut& 
                           (white[x] < kClipped || !settings.mask_saturated);
         const float light = static_cast<float>(ramp[x] - black[x]) / std::max(range, 1.0F);
         float share = std::clamp(light, 0.0F, 1.0F);
-        if (ramp_exponent != 1.0F) {
-            share = std::pow(share, ramp_exponent);
+        if (!plan.grey.linear()) {
+            share = static_cast<float>(plan.grey.value(static_cast<double>(share)));
         }
         out.phase[x] = good ? (share > 0.5F ? share - 1.0F : share) * kTurn : kNone;
         out.modulation[x] = good ? 0.5F * range : 0.0F;

@@ -33,8 +33,7 @@ DepthDecoder::Impl::Impl(DecodePlan decode_plan, const DecodeSettings& decode_se
       size(image),
       window(plan.pattern_count),
       still(plan.sines.size()),
-      following(plan.sines.size()),
-      ramp_exponent(static_cast<float>(plan.gamma > 0.0 ? 1.0 / plan.gamma : 1.0)) {}
+      following(plan.sines.size()) {}
 
 DepthDecoder::Impl::Scratch::Scratch(int width) : grey(width, kMostImages) {
     for (Image<float>* row : {&phase, &modulation, &coordinate, &reference, &ideal, &moving_phase,

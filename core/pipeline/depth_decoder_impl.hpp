@@ -10,11 +10,11 @@
 #include "core/decode/carrier.hpp"
 #include "core/decode/colour_palette.hpp"
 #include "core/decode/taps.hpp"
+#include "core/depth/order_reference.hpp"
 #include "core/depth/triangulation.hpp"
 #include "core/pipeline/decode_plan.hpp"
 #include "core/pipeline/frame_window.hpp"
 #include "core/pipeline/motion.hpp"
-#include "core/pipeline/order_reference.hpp"
 #include "core/pipeline/row_team.hpp"
 
 namespace xtrack {
@@ -129,7 +129,6 @@ struct DepthDecoder::Impl {
     double moving_depth_mm = 0.0;      // of what moves; 0: unknown
     double drift_rad_per_cycle = 0.0;  // of the shortest period, at what moves
     std::vector<std::uint16_t> moving_depths;
-    float ramp_exponent = 1.0F;  // of a ramp's light that gives its value
     std::optional<RowTeam> team;
     std::vector<Scratch> scratches;  // of the team's members
 };

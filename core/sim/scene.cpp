@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/pattern/response_curve.hpp"
 #include "core/sim/mesh.hpp"
 #include "core/sim/random.hpp"
 
@@ -256,11 +257,18 @@ PatternCurves::PatternCurves(const SimSettings& settings, std::size_t channels)
     }
     for (std::size_t p = 0; p < patterns; ++p) {
         for (int colour = 0; colour < 3; ++colour) {
+            const auto& believed = settings.projector.compensation;
+            const ResponseCurve driver =
+                believed ? ResponseCurve(believed->light[static_cast<std::size_t>(colour)])
+                         : ResponseCurve();
             for (std::size_t x = 0; x < length_; ++x) {
-                const double shown =
-                    intensity(settings.patterns.patterns[p], static_cast<double>(x), colour);
+                const double shown = driver.value(
+                    intensity(settings.patterns.patterns[p], static_cast<double>(x), colour));
                 const double level = std::round(shown * kLevels) / kLevels;
-                sharp[x] = black + (1.0 - black) * std::pow(level, settings.projector.gamma);
+                const double bent = settings.projector.s_curve[static_cast<std::size_t>(colour)];
+                const double light = (1.0 - bent) * std::pow(level, settings.projector.gamma) +
+                                     bent * level * level * (3.0 - 2.0 * level);
+                sharp[x] = black + (1.0 - black) * light;
             }
             for (int x = 0; x <= last; ++x) {
                 double v = 0.0;

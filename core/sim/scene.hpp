@@ -91,7 +91,7 @@ struct StaticScene {
                                              const Lamp& lamp);
 
 /// Light of each pattern along the coded axis as it reaches the wall: 8-bit values, the projector's
-/// gamma and black level, blurred; one curve a camera channel, crosstalk included.
+/// response and black level, blurred; one curve a camera channel, crosstalk included.
 class PatternCurves {
  public:
     PatternCurves(const SimSettings& settings, std::size_t channels);

@@ -146,13 +146,18 @@ Result<void> SimSettings::validate() const {
     if (auto ok = xtrack::validate(patterns); !ok) {
         return ok.error();
     }
+    PatternSequence compensated = patterns;
+    compensated.response = projector.compensation;
+    if (auto ok = xtrack::validate(compensated); !ok) {
+        return Error{ok.error().code, "simulation: projector.compensation: " + ok.error().message};
+    }
     if (!(patterns.projector_size == rig.projector->size)) {
         return Error{ErrorCode::invalid_argument,
                      "simulation: projector_size of the patterns and of the rig differ"};
     }
     constexpr double kHour = 3600.0;
     const double frame_s = 1.0 / std::max(camera.frame_hz, 1e-3);
-    const std::array<Bound, 29> bounds{{
+    const std::array<Bound, 32> bounds{{
         {"duration_s", duration_s, 0.0, 10.0 * kHour},
         {"user.hand_length_mm", user.hand_length_mm, 140.0, 220.0},
         {"user.skin_albedo", user.skin_albedo, 0.15, 0.8},
@@ -168,6 +173,9 @@ Result<void> SimSettings::validate() const {
         {"projector.light_grey", projector.light_grey, 0.0, 1000.0},
         {"projector.contrast", projector.contrast, 10.0, 1e6},
         {"projector.gamma", projector.gamma, 0.3, 4.0},
+        {"projector.s_curve[0]", projector.s_curve[0], 0.0, 1.0},
+        {"projector.s_curve[1]", projector.s_curve[1], 0.0, 1.0},
+        {"projector.s_curve[2]", projector.s_curve[2], 0.0, 1.0},
         {"projector.blur_px", projector.blur_px, 0.0, 20.0},
         {"camera.frame_hz", camera.frame_hz, 1.0, 240.0},
         {"camera.exposure_s", camera.exposure_s, 1e-5, frame_s},

@@ -103,11 +103,17 @@ Pattern grown_pattern() {
 TEST(RoundTrip, Pattern) { EXPECT_EQ(echo(some_pattern()), grown_pattern()); }
 
 TEST(RoundTrip, PatternSequence) {
-    const PatternSequence before{Axis::x, {1280, 720}, 2.2, {some_pattern(), some_pattern()}};
+    const PatternSequence before{Axis::x,
+                                 {1280, 720},
+                                 2.2,
+                                 ProjectorResponse{{{{0.0, 1.0}, {0.0, 0.5, 1.0}, {}}}},
+                                 {some_pattern(), some_pattern()}};
     const PatternSequence after = echo(before);
     EXPECT_EQ(after.axis, Axis::y);
     EXPECT_EQ(after.projector_size, (Size{1281, 721}));
     EXPECT_EQ(after.gamma, 2.2 + 1.0);
+    ASSERT_TRUE(after.response.has_value());
+    EXPECT_THAT(after.response->light[1], ::testing::ElementsAre(1.0, 1.5, 2.0));
     EXPECT_THAT(after.patterns, ::testing::ElementsAre(grown_pattern(), grown_pattern()));
 }
 

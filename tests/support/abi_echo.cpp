@@ -96,6 +96,13 @@ PatternSequence echo(PatternSequence value) {
     ++value.projector_size.width;
     ++value.projector_size.height;
     value.gamma = value.gamma.value_or(0.0) + 1.0;
+    if (value.response) {
+        for (std::vector<double>& light : value.response->light) {
+            for (double& step : light) {
+                step += 1.0;
+            }
+        }
+    }
     for (Pattern& pattern : value.patterns) {
         pattern = echo(pattern);
     }

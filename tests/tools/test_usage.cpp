@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(Each, Help,
 TEST(Usage, HelpOfTheCommandNamesEverySubcommand) {
     const Outcome outcome = xtrack_command({"--help"});
     EXPECT_EQ(outcome.status, 0);
-    for (const char* name : {"run", "replay", "eval", "demo", "decode", "bench"}) {
+    for (const char* name : {"run", "replay", "eval", "demo", "decode", "calibrate", "bench"}) {
         EXPECT_THAT(outcome.out, HasSubstr(std::string("\n  ") + name + " "));
     }
 }

@@ -57,9 +57,10 @@ struct DecodeStatus {
 ///
 /// What is used of a sequence: sines by period, from the longest (three or more phases each, or one
 /// colour pattern with its phases in red, green and blue); a Gray code with white and black images
-/// or inverted bits; other flat patterns are passed over. Where the projector's gamma is known, the
-/// phase error it causes is subtracted: a power of a sine has harmonics that depend on gamma alone,
-/// so the error is a function of the phase, whatever the skin's shade and the ambient light.
+/// or inverted bits; other flat patterns are passed over. Where the projector's response or
+/// gamma is known, the phase error it causes is subtracted: a bent sine has harmonics that depend
+/// on the bend alone, so the error is a function of the phase, whatever the skin's shade and the
+/// ambient light.
 ///
 /// Colour fringes give a phase with every image of the shortest period, and no motion tears it:
 /// a depth image comes with each such image, other colour periods only order it. What surfaces do

@@ -61,6 +61,13 @@ struct MethodInfo {
 /// @since 0.1
 [[nodiscard]] Result<PatternSequence> method_sequence(Method method, const Rig& rig, Axis axis);
 
+/// What a LightCalibrator wants to see: flats of equal steps from black to white, then the patterns
+/// of `dual` (where on the projector each pixel looks) and of `rgb`.
+/// @param levels flats, 9 to 256; 16, 18, 52 and 256 are shown exactly in 8 bits
+/// @thread any
+/// @since 0.1
+[[nodiscard]] PatternSequence light_sequence(Axis axis, Size projector_size, int levels = 18);
+
 /// What decides between methods.
 /// @since 0.1
 struct MethodNeeds {
@@ -69,7 +76,7 @@ struct MethodNeeds {
     /// Camera images for which a pattern must be held: 1 where camera and projector are locked, 2
     /// where they run free.
     int hold_frames = 1;
-    /// The camera's colour self-test (ColourSelfTest::passed); empty: not made, colour is not
+    /// The camera's colour self-test (works_as_shown()); empty: not made, colour is not
     /// trusted with metric depth but still tried when nothing else will do.
     std::optional<bool> colour_works;
     bool metric = true;        ///< depth must be in mm

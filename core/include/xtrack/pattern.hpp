@@ -49,6 +49,20 @@ struct Pattern {
     friend bool operator==(const Pattern&, const Pattern&) = default;
 };
 
+/// Steps that each curve of a ProjectorResponse may have.
+inline constexpr std::size_t kMinResponseSteps = 5;
+inline constexpr std::size_t kMaxResponseSteps = 256;
+
+/// What a projector makes of the values it is handed: light at equal steps of the value from 0 to
+/// 1, straight between them. Each curve begins with 0, ends with 1 and never falls; all have as
+/// many steps. A grey camera sees one mix of the colours, which then stands for all three.
+/// @since 0.1
+struct ProjectorResponse {
+    std::array<std::vector<double>, 3> light;  ///< of red, green, blue; shares of full light
+
+    friend bool operator==(const ProjectorResponse&, const ProjectorResponse&) = default;
+};
+
 /// The patterns a projector shows, in order, again and again.
 /// @since 0.1
 struct PatternSequence {
@@ -56,6 +70,8 @@ struct PatternSequence {
     Size projector_size;
     /// light = value^gamma of the projector; absent = unknown, 1 = linear
     std::optional<double> gamma;
+    /// Its measured response; where it is known gamma is passed over.
+    std::optional<ProjectorResponse> response;
     std::vector<Pattern> patterns;
 
     /// Projector pixels along the coded axis.
@@ -71,7 +87,7 @@ inline constexpr int kMaxGrayBits = 16;
 
 /// Checks every field that the kinds in use name: sizes 1..kMaxImageSide_px, periods of at least
 /// two pixels (fewer cannot be shown), bits 1..kMaxGrayBits, levels 0..1, nothing NaN or infinite,
-/// 1..kMaxPatterns patterns.
+/// 1..kMaxPatterns patterns, a response that is one.
 /// @return an Error that names the field (`sequence[3].period_px`) and the mend
 /// @thread any
 /// @since 0.1
@@ -89,15 +105,16 @@ inline constexpr int kMaxGrayBits = 16;
 /// @since 0.1
 enum class GammaCompensation {
     none,           ///< value = light: what a projector set to linear wants, and the plain sequence
-    precompensate,  ///< value = light^(1 / gamma): the wall then shows the sequence as written
+    precompensate,  ///< the value whose light it is: the wall then shows the sequence as written
 };
 
-/// Draws one pattern as the projector shall be handed it: grey8, or bgr8 for rgb_sine (in bytes:
-/// blue, green, red). Sizes `out` to the projector; rounds to the nearest of 256 values.
+/// Draws one pattern as the projector shall be handed it: grey8, or bgr8 (in bytes: blue, green,
+/// red) for rgb_sine, and for all where the colours are compensated differently. Sizes `out` to the
+/// projector; rounds to the nearest of 256 values.
 /// @param index into sequence.patterns
 /// @param out keeps its memory from call to call
 /// @return the format, or an Error: the sequence is not valid, the index is out of range, or
-///         compensation is asked for while `sequence.gamma` is unknown
+///         compensation is asked for while neither response nor gamma is known
 /// @thread any; allocates only when `out` must grow, and one row's buffer
 /// @since 0.1
 [[nodiscard]] Result<PixelFormat> render_pattern(const PatternSequence& sequence, int index,

@@ -26,6 +26,13 @@ enum class RecordingKind {
     joints,  ///< no images: joints.csv
 };
 
+/// What becomes of the colours of fringe images.
+/// @since 0.1
+enum class ColourReading {
+    by_pattern,  ///< bgr8 where the pattern is coloured, else luma: what decoding wants
+    as_stored,   ///< bgr8 where the file has colours: what a calibration of light wants
+};
+
 /// One line of frames.csv.
 /// @since 0.1
 struct RecordingEntry {
@@ -67,10 +74,11 @@ class RecordingReader {
     [[nodiscard]] Size image_size() const noexcept;
 
     /// Reads one image of fringes: bgr8 if its pattern (or, where that is unknown, any of the
-    /// sequence) is coloured, else grey8, colour images by their luma.
+    /// sequence) is coloured, else grey8, colour images by their luma; or as `colours` says.
     /// @return an Error: the kind is not fringe; the image is torn, of another size or not 8-bit
     /// @pre index < entries().size(), here and below
-    [[nodiscard]] Result<void> read_frame(std::size_t index, Frame& out) const;
+    [[nodiscard]] Result<void> read_frame(std::size_t index, Frame& out,
+                                          ColourReading colours = ColourReading::by_pattern) const;
 
     /// Reads one depth image. `quality` is left empty; `metric` says if there is a rig.
     [[nodiscard]] Result<void> read_depth(std::size_t index, DepthFrame& out) const;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -79,8 +80,14 @@ struct SimProjector {
     /// grey levels of a white surface 1 m away, square to the light, at full level, 0..1000
     double light_grey = 115.0;
     double contrast = 500.0;  ///< full level : level 0, >= 10
-    double gamma = 1.0;       ///< light = value^gamma, 0.3..4
-    double blur_px = 1.0;     ///< Gaussian sigma of defocus, projector pixels, 0..20
+    double gamma = 1.0;       ///< light = value^gamma, 0.3..4; more of it in s_curve
+    /// Of red, green, blue, 0..1: so much of the light follows value^2 (3 - 2 value) instead, the S
+    /// of a picture mode
+    std::array<double, 3> s_curve{};
+    /// What its driver believes the two to be, and makes up for: patterns are handed over as the
+    /// values whose light they want. Absent: as they are
+    std::optional<ProjectorResponse> compensation;
+    double blur_px = 1.0;  ///< Gaussian sigma of defocus, projector pixels, 0..20
 };
 
 /// The camera's sensor and lens. Its geometry is in the rig.

@@ -118,6 +118,11 @@ TEST_F(RoundTrip, GreyPatternsInColourImagesAreReadAsLuma) {
     ASSERT_TRUE(RecordingReader::open(folder_ / "rec")->read_frame(0, back).ok());
     EXPECT_EQ(back.format, PixelFormat::grey8);
     EXPECT_NEAR(back.pixels.at(5, 0), 0.114 * 10 + 0.587 * 200 + 0.299 * 100, 1.0);
+    // A calibration of light wants their colours.
+    ASSERT_TRUE(
+        RecordingReader::open(folder_ / "rec")->read_frame(0, back, ColourReading::as_stored).ok());
+    EXPECT_EQ(back.format, PixelFormat::bgr8);
+    expect_same_pixels(back.pixels, colour.pixels);
 }
 
 TEST_F(RoundTrip, DepthComesBackBitForBit) {

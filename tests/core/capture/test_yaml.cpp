@@ -140,6 +140,25 @@ TEST(PatternYaml, WhatIsWrittenReadsBack) {
     }
 }
 
+TEST(PatternYaml, ResponsesReadBack) {
+    PatternSequence s = dual_sequence(Axis::x, {1024, 768}, 320.0, 32.0);
+    s.response = ProjectorResponse{{{{0.0, 0.1, 0.3, 0.6, 1.0},
+                                     {0.0, 0.0, 0.123456789012345, 0.6, 1.0},
+                                     {0.0, 0.2, 0.3, 1.0, 1.0}}}};
+    const std::string text = patterns_text(s);
+    const auto back = parse_patterns(text, "pattern.yaml");
+    ASSERT_TRUE(back.ok()) << back.error().message;
+    EXPECT_EQ(*back, s);
+    EXPECT_THAT(pattern_message(replaced(text, "response_green", "response_grin")),
+                HasSubstr("pattern.yaml: response_green is missing"));
+    EXPECT_THAT(pattern_message(replaced(text, "0.1, 0.3, 0.6", "0.5, 0.3, 0.6")),
+                HasSubstr("response_red[2] is 0.3"));
+    EXPECT_THAT(pattern_message(replaced(text, "0.1, 0.3, 0.6", "0.1, .nan, 0.6")),
+                HasSubstr("response_red holds NaN"));
+    EXPECT_THAT(pattern_message(replaced(text, "0.1, 0.3, 0.6", "0.1, 0.3")),
+                HasSubstr("response_red does not hold 5 to 256 numbers"));
+}
+
 TEST(PatternYaml, RampsReadBack) {
     PatternSequence s = dual_sequence(Axis::x, {1024, 768}, 320.0, 32.0);
     s.patterns[0] = {};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <xtrack/pattern.hpp>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -163,6 +164,61 @@ TEST(Pattern, CompensationNeedsAKnownGammaAndUndoesIt) {
     EXPECT_EQ(image.at(4, 0), 128);
     ASSERT_TRUE(render_pattern(s, 0, image, GammaCompensation::precompensate).ok());
     EXPECT_NEAR(std::pow(image.at(4, 0) / 255.0, 2.2), 0.5, 0.01);
+}
+
+ProjectorResponse power_response(double red, double green, double blue) {
+    ProjectorResponse response;
+    for (int i = 0; i <= 51; ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            response.light[c].push_back(
+                std::pow(i / 51.0, std::array<double, 3>{red, green, blue}[c]));
+        }
+    }
+    return response;
+}
+
+TEST(Pattern, CompensationUndoesAMeasuredResponseAlike) {
+    auto s = three_step_sequence(Axis::x, kProjector, 16.0);
+    s.gamma = 1.3;  // passed over where the response is known
+    s.response = power_response(2.2, 2.2, 2.2);
+    Image<std::uint8_t> image;
+    ASSERT_EQ(*render_pattern(s, 0, image, GammaCompensation::precompensate), PixelFormat::grey8);
+    for (int x = 0; x < 16; ++x) {
+        EXPECT_NEAR(std::pow(image.at(x, 5) / 255.0, 2.2), intensity(s.patterns[0], x), 0.01) << x;
+    }
+}
+
+TEST(Pattern, CompensationGivesEachColourItsOwn) {
+    auto s = three_step_sequence(Axis::x, kProjector, 16.0);
+    s.response = power_response(1.0, 1.8, 2.4);
+    Image<std::uint8_t> image;
+    ASSERT_EQ(*render_pattern(s, 0, image), PixelFormat::grey8);
+    // A grey fringe then needs colours.
+    ASSERT_EQ(*render_pattern(s, 0, image, GammaCompensation::precompensate), PixelFormat::bgr8);
+    ASSERT_EQ(image.width(), 3 * 64);
+    for (int x = 0; x < 16; ++x) {
+        const double light = intensity(s.patterns[0], x);
+        EXPECT_NEAR(std::pow(image.at(3 * x, 5) / 255.0, 2.4), light, 0.01) << x;
+        EXPECT_NEAR(std::pow(image.at(3 * x + 1, 5) / 255.0, 1.8), light, 0.01) << x;
+        EXPECT_NEAR(image.at(3 * x + 2, 5) / 255.0, light, 0.01) << x;
+    }
+}
+
+TEST(Pattern, ResponsesThatAreNoneAreNamed) {
+    auto s = three_step_sequence(Axis::x, kProjector, 16.0);
+    s.response = power_response(1.0, 1.8, 2.4);
+    EXPECT_TRUE(validate(s));
+    s.response->light[1][7] = 0.0;
+    expect_refused(s, "response_green[7]");
+    s.response->light[1][7] = std::numeric_limits<double>::quiet_NaN();
+    expect_refused(s, "response_green[7]");
+    s.response = power_response(1.0, 1.8, 2.4);
+    s.response->light[2].back() = 0.99;
+    expect_refused(s, "response_blue");
+    s.response->light[2].pop_back();
+    expect_refused(s, "response_blue is 51 numbers long");
+    s.response->light = {std::vector<double>{0.0, 1.0}, {0.0, 1.0}, {0.0, 1.0}};
+    expect_refused(s, "response_red");
 }
 
 TEST(Pattern, IndexOutOfRangeIsRefused) {

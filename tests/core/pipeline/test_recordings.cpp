@@ -15,6 +15,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include <xtrack/depth_decoder.hpp>
+#include <xtrack/light_calibration.hpp>
 #include <xtrack/phase_ripple.hpp>
 #include <xtrack/relative_depth.hpp>
 
@@ -173,6 +174,52 @@ INSTANTIATE_TEST_SUITE_P(
                     Still{"rendered/static-three-step", OrderSource::depth_image, 0.45},
                     Still{"rendered/static-rgb", OrderSource::automatic, 0.6},
                     Still{"rendered/static-dual-gamma22", OrderSource::automatic, 0.8}));
+
+// Grey fringes of the same scene say where on the projector each pixel looks. No ramp, no white:
+// the projector is known to be linear, and the colours of skin, clothes and wall average.
+TEST(ColoursOfARendering, GiveItsMatrixAndItsDepth) {
+    LOAD_OR_SKIP("rendered/static-dual", grey);
+    LOAD_OR_SKIP("rendered/static-rgb", colour);
+    PatternSequence both = grey.patterns;
+    both.patterns.insert(both.patterns.end(), colour.patterns.patterns.begin(),
+                         colour.patterns.patterns.end());
+    auto calibrator = LightCalibrator::create(both, colour.size(), grey.rig);
+    ASSERT_TRUE(calibrator) << calibrator.error().message;
+    for (const FramePtr& frame : grey.frames) {
+        ASSERT_TRUE(calibrator->add(*frame));
+    }
+    for (const FramePtr& frame : colour.frames) {
+        Frame later = *frame;
+        later.pattern += static_cast<int>(grey.patterns.patterns.size());
+        ASSERT_TRUE(calibrator->add(later));
+    }
+    const auto found = calibrator->finish();
+    ASSERT_TRUE(found) << found.error().message;
+    ASSERT_TRUE(found->colour);
+    const ColourSelfTest& test = *found->colour;
+    const Mat3d error = test.camera_from_projector_rgb - *colour.rig.camera_from_projector_rgb;
+    const auto score_of = [&](const std::optional<Mat3d>& matrix) {
+        test::RecordingOnDisk with = colour;
+        with.rig.camera_from_projector_rgb = matrix;
+        return judge(with, decode_all(with, {}).depth(), 0, 2, 15.0);
+    };
+    const HandScore theirs = score_of(colour.rig.camera_from_projector_rgb);
+    const HandScore ours = score_of(test.camera_from_projector_rgb);
+    const HandScore none = score_of(std::nullopt);
+    std::printf(
+        "static-rgb: matrix off by %.3f at most, residual %.3f, phase error %.3f rad, contrast "
+        "%.3f, %zu pixels (%s); depth RMS/off/missing with the file's matrix %.2f mm/%.1f/%.1f %%, "
+        "with ours %.2f mm/%.1f/%.1f %%, with none %.2f mm/%.1f/%.1f %%\n",
+        error.cwiseAbs().maxCoeff(), test.residual, test.phase_error_rad, test.contrast,
+        test.pixels, test.reason.c_str(), theirs.rms_mm, 100.0 * theirs.off, 100.0 * theirs.missing,
+        ours.rms_mm, 100.0 * ours.off, 100.0 * ours.missing, none.rms_mm, 100.0 * none.off,
+        100.0 * none.missing);
+    EXPECT_TRUE(test.passed) << test.reason;
+    EXPECT_LT(error.cwiseAbs().maxCoeff(), 0.02);
+    EXPECT_LE(ours.rms_mm, 0.57);
+    EXPECT_LE(ours.off, 0.01);
+    EXPECT_LE(ours.missing, 0.03);
+}
 
 // Of three steps; where the first begins does not matter to gamma.
 const std::vector<double> kPhases_rad{0.0, -2.0943951, -4.1887902};

@@ -99,6 +99,26 @@ TEST(SimLight, GammaBendsTheLight) {
                 std::pow(0.5, 2.2), 0.02);
 }
 
+TEST(SimLight, ADriverThatCompensatesShowsWhatIsWanted) {
+    SimSettings s = wall_alone();
+    test::show_flat(s, {1.0, 0.5});
+    s.projector.gamma = 2.2;
+    s.projector.light_grey = 400.0;
+    ProjectorResponse response;
+    for (int i = 0; i <= 51; ++i) {
+        for (auto& light : response.light) {
+            light.push_back(std::pow(i / 51.0, 2.2));
+        }
+    }
+    s.projector.compensation = response;
+    const auto rig = test::make_rig(s);
+    const auto full = rig->next({}).frame;
+    const auto half = rig->next({}).frame;
+    EXPECT_NEAR(static_cast<double>(half->pixels.at(80, 60)) / full->pixels.at(80, 60), 0.5, 0.02);
+    s.projector.compensation->light[1][3] = 2.0;
+    EXPECT_FALSE(SimulatedRig::create(s));
+}
+
 TEST(SimLight, AHandCastsItsShadowWhereGeometrySays) {
     SimSettings s = test::small_still_hand();
     s.user.visible_body = false;

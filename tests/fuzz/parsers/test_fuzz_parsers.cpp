@@ -34,7 +34,11 @@ std::string seed_of(int parser) {
             return joint_recording_text(frames);
         }
         case 3: return capture::rig_text({small_rig(), 0.1});
-        case 4: return capture::patterns_text(gray_code_sequence(Axis::y, {1024, 768}, 32.0));
+        case 4: {
+            PatternSequence sequence = gray_code_sequence(Axis::y, {1024, 768}, 32.0);
+            sequence.response.emplace().light.fill({0.0, 0.1, 0.3, 0.6, 1.0});
+            return capture::patterns_text(sequence);
+        }
         case 5: return "frame,pose,extended_fingers,hand_present\n0,open_palm,5,1\n1,,,0\n";
         case 6: return hand_truth_text(std::vector<HandTruth>(2));
         default: return *capture::encode_png(Image<std::uint16_t>(8, 8, 7).view());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/pipeline/order_reference.hpp"
+#include "core/depth/order_reference.hpp"
 
 #include <algorithm>
 #include <cmath>
