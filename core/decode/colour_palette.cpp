@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/decode/arctangent.hpp"
+#include "core/decode/colour_cost_weights.hpp"
 
 namespace xtrack {
 namespace {
@@ -16,6 +17,8 @@ constexpr float kTurn = 2.0F * std::numbers::pi_v<float>;
 constexpr std::array<float, 3> kSkin{1.4F, 0.95F, 0.75F};
 constexpr float kSkinContrast = 0.7F;
 constexpr std::size_t kGiven = 2;  // surfaces that are always there: grey and skin
+// Grey, and as many tints around it, of which skin is one, that all neighbours are as far apart.
+constexpr std::size_t kTints = 7;
 
 // What is at another place in the coarse image must agree there by so much better.
 constexpr float kMovesShare = 0.8F;
@@ -27,6 +30,15 @@ constexpr float kDamping = 0.5F;
 constexpr float kSureCost = 0.15F;   // pixels of more do not teach
 constexpr float kPairWeight = 0.3F;  // of what two periods say, against what the contrast says
 constexpr float kFade = 0.5F;        // of what a fit knows, from frame to frame
+
+// What a contrast that is not the usual one counts beside one that changes with the phase.
+constexpr float kUnusualContrast = 0.05F;
+constexpr float kMostLoneContrast = 2.0F;  // of a sample; more says no more
+// How far a given surface may become another, over E: a third of the way to its neighbours.
+constexpr float kLeash = 0.06F;
+// What a surface that is seen e times less than another must explain better: a cell is smaller than
+// a fringe, and a little of a fringe is explained by much.
+constexpr float kRare = 0.4F;
 
 // Votes for gains, over E.
 constexpr float kVoteRange = 0.4F;
@@ -49,6 +61,17 @@ float coordinate_px(const ColourModel::Light& seen, const ColourPeriod& period) 
 float shares_apart(float a_px, float b_px, const ColourPeriod& period) noexcept {
     const float apart = (a_px - b_px) / static_cast<float>(period.period_px);
     return apart - std::floor(apart + 0.5F);
+}
+
+float possible(float contrast) noexcept {
+    return contrast >= 0.0F && contrast < kMostLoneContrast ? contrast : kMostLoneContrast;
+}
+
+void keep_near(const std::array<float, 2>& given, std::array<float, 2>& log_gain) noexcept {
+    const float re = log_gain[0] - given[0];
+    const float im = log_gain[1] - given[1];
+    const float share = kLeash / std::max(std::hypot(re, im), kLeash);
+    log_gain = {given[0] + share * re, given[1] + share * im};
 }
 
 float distance(const ColourSurface& a, const ColourSurface& b) noexcept {
@@ -79,6 +102,7 @@ ColourPalette::ColourPalette(Size image, const ColourModel& model, const ColourP
         plane.resize(samples_.width, samples_.height);
     }
     moved_costs_.resize(static_cast<std::size_t>(samples_.width));
+    contrasts_.resize(static_cast<std::size_t>(samples_.width));
     for (Image<float>& cost : costs_) {
         cost.resize(samples_.width, samples_.height);
     }
@@ -100,9 +124,22 @@ void ColourPalette::clear() noexcept {
         entry.fit.clear();
         entry.cells = 0;
     }
+    const ColourSurface skin = model_.surface(kSkin, kSkinContrast);
     set(0, ColourSurface{});
-    set(1, model_.surface(kSkin, kSkinContrast));
+    set(1, skin);
     used_ = kGiven;
+    for (; !coarse_ && used_ < kTints; ++used_) {
+        ColourSurface tint = skin;
+        const float turn = kTurn * static_cast<float>(used_ - 1) / (kTints - 1);
+        const float c = std::cos(turn);
+        const float s = std::sin(turn);
+        tint.log_gain = {c * skin.log_gain[0] - s * skin.log_gain[1],
+                         s * skin.log_gain[0] + c * skin.log_gain[1]};
+        set(used_, tint);
+    }
+    for (Entry& entry : entries_) {
+        entry.given = entry.surface.log_gain;
+    }
     cells_.fill(0);
     surfaces_.fill(0);
     votes_.fill(0.0F);
@@ -145,8 +182,41 @@ ColourModel::Light ColourPalette::coarse_at(int sx, int sy) const noexcept {
     return {planes_[3].at(sx, sy), planes_[4].at(sx, sy), planes_[5].at(sx, sy)};
 }
 
+// True where a contrast is all that a sample shows.
+bool ColourPalette::is_alone(int sx, int sy) const noexcept {
+    return !coarse_ && std::isnan(planes_[6].at(sx, sy));
+}
+
+// The cost of contrasts that differ from their mean, and of a mean that is not the surface's.
+void ColourPalette::judge_contrasts(Evidence& sum) const noexcept {
+    if (sum.alone <= 0.0F) {
+        return;
+    }
+    for (std::size_t k = 0; k < used_; ++k) {
+        const float mean = sum.contrast[k] / sum.alone;
+        const float unusual = mean - entries_[k].surface.contrast;
+        const float differ = std::max(sum.square[k] - sum.alone * mean * mean, 0.0F);
+        sum.cost[k] += colour_cost_weights::kContrast *
+                           (differ + kUnusualContrast * sum.alone * unusual * unusual) -
+                       kRare * entries_[k].commonness;
+    }
+}
+
+bool ColourPalette::teaches(std::size_t surface, int sx, int sy) const noexcept {
+    if (!is_alone(sx, sy)) {
+        return costs_[surface].at(sx, sy) < kSureCost;
+    }
+    const Evidence& sum = smoothed_[static_cast<std::size_t>(sy * kSampleStepPx / kCellPx) *
+                                        static_cast<std::size_t>(cells_.width()) +
+                                    static_cast<std::size_t>(sx * kSampleStepPx / kCellPx)];
+    const ColourModel::Light seen = entries_[surface].inverse * fine_at(sx, sy);
+    const float off = possible(std::hypot(seen[1], seen[2]) / seen[0]) -
+                      sum.contrast[surface] / sum.alone;
+    return colour_cost_weights::kContrast * off * off < kSureCost;
+}
+
 void ColourPalette::measure(const Entry& entry, const ColourSamples& samples, float moved_px,
-                            int count, float* cost) const noexcept {
+                            int count, float* cost, float* fine_contrast) const noexcept {
     ColourCost row;
     row.inverse = entry.inverse;
     row.contrast = entry.surface.contrast;
@@ -158,6 +228,7 @@ void ColourPalette::measure(const Entry& entry, const ColourSamples& samples, fl
     row.samples = samples;
     row.count = count;
     row.cost = cost;
+    row.fine_contrast = fine_contrast;
     colour_cost(row);
 }
 
@@ -176,56 +247,100 @@ void ColourPalette::add_row(int y) noexcept {
         return samples.fine[0][i] + samples.fine[1][i] + samples.fine[2][i] >= kLeastLight;
     };
     for (int i = 0; i < samples_.width; ++i) {
-        cells[i * kSampleStepPx / kCellPx].pixels += lit(i) ? 1.0F : 0.0F;
+        Evidence& cell = cells[i * kSampleStepPx / kCellPx];
+        cell.pixels += lit(i) ? 1.0F : 0.0F;
+        cell.alone += lit(i) && is_alone(i, sy) ? 1.0F : 0.0F;
+        cell.light += lit(i) ? samples.fine[0][i] + samples.fine[1][i] + samples.fine[2][i] : 0.0F;
     }
     for (std::size_t k = 0; k < used_; ++k) {
         float* costs = costs_[k].row(sy);
-        measure(entries_[k], samples, 0.0F, samples_.width, costs);
+        measure(entries_[k], samples, 0.0F, samples_.width, costs, contrasts_.data());
         if (moves) {
             measure(entries_[k], moved, moved_px_, samples_.width, moved_costs_.data());
         }
         for (int i = 0; i < samples_.width; ++i) {
-            if (lit(i)) {
-                Evidence& cell = cells[i * kSampleStepPx / kCellPx];
-                cell.cost[k] += costs[i];
-                cell.moved[k] +=
-                    moves ? moved_costs_[static_cast<std::size_t>(i)] : kMostColourCost;
+            if (!lit(i)) {
+                continue;
             }
+            Evidence& cell = cells[i * kSampleStepPx / kCellPx];
+            if (is_alone(i, sy)) {
+                const float contrast = possible(contrasts_[static_cast<std::size_t>(i)]);
+                cell.contrast[k] += contrast;
+                cell.square[k] += contrast * contrast;
+                continue;
+            }
+            cell.cost[k] += costs[i];
+            cell.moved[k] += moves ? moved_costs_[static_cast<std::size_t>(i)] : kMostColourCost;
         }
     }
 }
 
-void ColourPalette::choose() noexcept {
+// What the cells at and around (x, y) say together, those `spacing` cells away for half.
+ColourPalette::Evidence ColourPalette::around(const std::vector<Evidence>& cells, int x, int y,
+                                              int spacing) const noexcept {
     const int width = cells_.width();
-    const int height = cells_.height();
-    const auto at = [&](int x, int y) { return static_cast<std::size_t>(y * width + x); };
-    const auto add = [](Evidence& to, const Evidence& of, float weight) {
-        to.pixels += weight * of.pixels;
-        for (std::size_t k = 0; k < kMostSurfaces; ++k) {
-            to.cost[k] += weight * of.cost[k];
-            to.moved[k] += weight * of.moved[k];
+    const Evidence& here = cells[static_cast<std::size_t>(y * width + x)];
+    Evidence sum;
+    for (int j = y - spacing; j <= y + spacing; j += spacing) {
+        for (int i = x - spacing; i <= x + spacing; i += spacing) {
+            if (j < 0 || j >= cells_.height() || i < 0 || i >= width) {
+                continue;
+            }
+            const Evidence& there = cells[static_cast<std::size_t>(j * width + i)];
+            if (!coarse_ && !alike(here, there)) {
+                continue;
+            }
+            const float weight = (i == x ? 2.0F : 1.0F) * (j == y ? 2.0F : 1.0F);
+            sum.pixels += weight * there.pixels;
+            sum.light += weight * there.light;
+            sum.alone += weight * there.alone;
+            for (std::size_t k = 0; k < kMostSurfaces; ++k) {
+                sum.cost[k] += weight * there.cost[k];
+                sum.moved[k] += weight * there.moved[k];
+                sum.contrast[k] += weight * there.contrast[k];
+                sum.square[k] += weight * there.square[k];
+            }
+        }
+    }
+    return sum;
+}
+
+// A contrast says something over a whole fringe, which is wider than a few cells: without another
+// period cells that are as bright are taken together from farther away.
+void ColourPalette::gather() noexcept {
+    const auto pass = [&](const std::vector<Evidence>& from, std::vector<Evidence>& to,
+                          int spacing) {
+        for (int y = 0; y < cells_.height(); ++y) {
+            for (int x = 0; x < cells_.width(); ++x) {
+                to[static_cast<std::size_t>(y * cells_.width() + x)] = around(from, x, y, spacing);
+            }
         }
     };
+    pass(evidence_, smoothed_, 1);
+    if (!coarse_) {
+        constexpr int kFar = 3;  // cells; three that were taken together lie side by side
+        pass(smoothed_, evidence_, kFar);
+        smoothed_.swap(evidence_);
+    }
+}
+
+void ColourPalette::choose() noexcept {
     for (Entry& entry : entries_) {
+        entry.commonness = std::log1p(static_cast<float>(entry.cells));
         entry.cells = 0;
     }
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            Evidence sum;
-            for (int j = std::max(0, y - 1); j <= std::min(height - 1, y + 1); ++j) {
-                for (int i = std::max(0, x - 1); i <= std::min(width - 1, x + 1); ++i) {
-                    const float weight = (i == x ? 2.0F : 1.0F) * (j == y ? 2.0F : 1.0F);
-                    add(sum, evidence_[at(i, j)], weight);
-                }
-            }
-            smoothed_[at(x, y)] = sum;
+    gather();
+    for (int y = 0; y < cells_.height(); ++y) {
+        for (int x = 0; x < cells_.width(); ++x) {
+            Evidence& sum = smoothed_[static_cast<std::size_t>(y * cells_.width() + x)];
+            judge_contrasts(sum);
             std::size_t best = 0;
             std::size_t moved = 0;
             for (std::size_t k = 1; k < used_; ++k) {
                 best = sum.cost[k] < sum.cost[best] ? k : best;
                 moved = sum.moved[k] < sum.moved[moved] ? k : moved;
             }
-            const bool moves = sum.moved[moved] < kMovesShare * sum.cost[best];
+            const bool moves = coarse_ && sum.moved[moved] < kMovesShare * sum.cost[best];
             best = moves ? moved : best;
             const auto value = static_cast<std::uint8_t>(best + (moves ? kMoved : 0U));
             cells_.at(x, y) = value;
@@ -303,8 +418,7 @@ void ColourPalette::refine() noexcept {
                 cells_.at(sx * kSampleStepPx / kCellPx, sy * kSampleStepPx / kCellPx);
             const std::size_t surface = surface_of(value);
             // What moved agrees only about; it can wait until it rests.
-            if (is_moved(value) || light.sum() < kLeastLight ||
-                !(costs_[surface].at(sx, sy) < kSureCost)) {
+            if (is_moved(value) || light.sum() < kLeastLight || !teaches(surface, sx, sy)) {
                 continue;
             }
             Entry& entry = entries_[surface];
@@ -324,7 +438,12 @@ void ColourPalette::refine() noexcept {
     for (std::size_t k = 0; k < used_; ++k) {
         // Half a step: which cells are a surface's changes with what is believed of it.
         Entry& entry = entries_[k];
-        set(k, entry.fit.solve(entry.surface, kBelievedPixels + kDamping * entry.fit.pixels()));
+        ColourSurface found =
+            entry.fit.solve(entry.surface, kBelievedPixels + kDamping * entry.fit.pixels());
+        if (!coarse_) {
+            keep_near(entry.given, found.log_gain);
+        }
+        set(k, found);
     }
 }
 
