@@ -73,6 +73,17 @@ int ComponentOrders::Votes::best() const noexcept {
     return found;
 }
 
+int ComponentOrders::Votes::reached(double share) const noexcept {
+    int sum = 0;
+    for (int order = low_; order <= high_; ++order) {
+        sum += of(order);
+        if (sum >= share * total_) {
+            return order;
+        }
+    }
+    return low_;
+}
+
 ComponentOrders::ComponentOrders(Size image, Axis axis, const Triangulation* geometry,
                                  double period_px, int coded_length_px)
     : size_(image), along_x_(axis == Axis::x), metric_(geometry != nullptr) {
@@ -80,7 +91,8 @@ ComponentOrders::ComponentOrders(Size image, Axis axis, const Triangulation* geo
                     (image.height + kGrid_px - 1) / kGrid_px};
     // Values of a component span at most the projector, and so do orders, both ways.
     const int reach = 2 * static_cast<int>(std::ceil(coded_length_px / period_px)) + 4;
-    for (Votes* votes : {&home_, &possible_, &before_, &sure_before_, &bridged_, &sure_bridged_}) {
+    for (Votes* votes :
+         {&home_, &possible_, &before_, &sure_before_, &bridged_, &sure_bridged_, &behind_}) {
         votes->create(reach);
     }
     const auto samples =
@@ -121,6 +133,8 @@ void ComponentOrders::forget() noexcept {
     orders_.clear();
     ambiguous_.clear();
     doubts_.clear();
+    recent_turns_.reset();
+    backdrop_.reset();
     standing_out_ = 0.0;
 }
 
@@ -135,13 +149,23 @@ float ComponentOrders::value_at(const Input& input, int x, int y,
 // the other: the projector's phase goes on across it, turns and all.
 void ComponentOrders::bridge_line(const Input& input, int line) noexcept {
     const int length = along_x_ ? size_.width : size_.height;
+    const auto line_of = [&](const ImageView<const float>& image) {
+        return along_x_ ? image.row(line) : image.data + line;
+    };
     const std::ptrdiff_t next = along_x_ ? 1 : input.phase_rad.stride;
-    const float* phase = along_x_ ? input.phase_rad.row(line) : input.phase_rad.data + line;
+    const float* phase = line_of(input.phase_rad);
+    const bool stands = !input.still_rad.empty();
+    const std::ptrdiff_t next_still = along_x_ ? 1 : input.still_rad.stride;
+    const float* still = stands ? line_of(input.still_rad) : nullptr;
     const auto raw_at = [&](int i, std::uint16_t& id) {
         const int x = along_x_ ? i : line;
         const int y = along_x_ ? line : i;
         const float taken_off =
             input.reference_rad.empty() ? 0.0F : kPerTurn * input.reference_rad.at(x, y);
+        if (stands && std::isfinite(still[i * next_still])) {
+            id = kStill;
+            return kPerTurn * still[i * next_still] + taken_off;
+        }
         return value_at(input, x, y, id) + taken_off;
     };
     // The value at a border of the shadow, going by what lies `away` from it.
@@ -156,7 +180,7 @@ void ComponentOrders::bridge_line(const Input& input, int line) noexcept {
     constexpr int kMargin = kClear_px + kSlope_px;
     int last_seen = -1;
     for (int i = 0; i < length; ++i) {
-        if (std::isnan(phase[i * next])) {
+        if (std::isnan(phase[i * next]) && !(stands && std::isfinite(still[i * next_still]))) {
             continue;
         }
         const int gap = i - last_seen - 1;
@@ -182,7 +206,7 @@ void ComponentOrders::bridge_line(const Input& input, int line) noexcept {
 
 void ComponentOrders::find_bridges(const Input& input) noexcept {
     bridges_.clear();
-    if (input.components.size() < 2) {
+    if (input.components.size() + (input.still_pixels > 0 ? 1 : 0) < 2) {
         return;
     }
     const int lines = along_x_ ? size_.height : size_.width;
@@ -228,7 +252,7 @@ void ComponentOrders::vote(const Input& input, const Sample& s) noexcept {
     home_.add(static_cast<int>(std::lround(home - s.value)));
     const float before = kPerTurn * input.before_rad.at(s.x, s.y);
     const std::uint16_t id = input.component_before.at(s.x, s.y);
-    // What was background says nothing of what has come before it.
+    // What was background, or stood still, says nothing of what has come before it.
     if (id != 0 && id <= ambiguous_before_.size() && std::isfinite(before) &&
         (metric_ || std::fabs(before) > kStandsOut)) {
         const auto order = static_cast<int>(std::lround(before - s.value));
@@ -240,6 +264,84 @@ void ComponentOrders::vote(const Input& input, const Sample& s) noexcept {
     }
 }
 
+// What a pixel shows when nothing is before it, turns; NaN: nobody knows.
+float ComponentOrders::known_behind(const Input& input, const Sample& s) const noexcept {
+    const float known = kPerTurn * input.known_rad.at(s.x, s.y);
+    if (std::isfinite(known) || !metric_ || !backdrop_) {
+        return known;
+    }
+    const float low = low_turns_.at(s.x / kGrid_px, s.y / kGrid_px);
+    const float high = high_turns_.at(s.x / kGrid_px, s.y / kGrid_px);
+    return low + *backdrop_ * (high - low);
+}
+
+void ComponentOrders::vote_behind(const Input& input, const Sample& s) noexcept {
+    if (input.known_rad.empty() || front_ == 0.0) {
+        return;
+    }
+    const float known = known_behind(input, s);
+    if (std::isfinite(known)) {
+        const auto front = static_cast<float>(front_);
+        behind_.add(static_cast<int>(std::ceil(front * (known - s.value) - kVolumeSlack)));
+    }
+}
+
+bool ComponentOrders::in_front(int order) const noexcept {
+    return behind_.total() == 0 || static_cast<int>(front_) * order >= nearest_known_;
+}
+
+bool ComponentOrders::is_possible(int order) const noexcept {
+    return in_front(order) &&
+           (!metric_ ||
+            possible_.of(order) >= kPossibleShare * static_cast<double>(samples_.size()));
+}
+
+// Where the last thing was that moved; else the farthest place before what stands still.
+int ComponentOrders::newcomer() const noexcept {
+    if (recent_turns_) {
+        double mean = 0.0;
+        for (const Sample& s : samples_) {
+            mean += static_cast<double>(s.value) / static_cast<double>(samples_.size());
+        }
+        const auto order = static_cast<int>(std::lround(static_cast<double>(*recent_turns_) - mean));
+        if (is_possible(order)) {
+            return order;
+        }
+    }
+    constexpr int kTried = 16;
+    for (int n = 0; behind_.total() > 0 && n < kTried; ++n) {
+        const int order = static_cast<int>(front_) * (nearest_known_ + n);
+        if (is_possible(order)) {
+            return order;
+        }
+    }
+    return home_.best();
+}
+
+// The largest thing that moves is where others will be, or it itself if it is lost for a while.
+void ComponentOrders::remember(const Input& input, std::size_t index) noexcept {
+    if (index != 0 || input.components[0].pixels < kBridgeablePixels) {
+        return;
+    }
+    double mean = 0.0;
+    double share = 0.0;
+    for (const Sample& s : samples_) {
+        mean += static_cast<double>(s.value) / static_cast<double>(samples_.size());
+        if (metric_ && !moving_) {
+            const float low = low_turns_.at(s.x / kGrid_px, s.y / kGrid_px);
+            const float high = high_turns_.at(s.x / kGrid_px, s.y / kGrid_px);
+            share += static_cast<double>((s.value + static_cast<float>(orders_[index]) - low) /
+                                         (high - low)) /
+                     static_cast<double>(samples_.size());
+        }
+    }
+    if (metric_ && !moving_) {
+        backdrop_ = static_cast<float>(share);
+        return;
+    }
+    recent_turns_ = static_cast<float>(mean + orders_[index]);
+}
+
 void ComponentOrders::vote_bridges(const Input& input, std::uint16_t id) noexcept {
     bridge_misses_ = 0;
     double mean = 0.0;
@@ -247,25 +349,30 @@ void ComponentOrders::vote_bridges(const Input& input, std::uint16_t id) noexcep
         mean += static_cast<double>(s.value) / static_cast<double>(samples_.size());
     }
     for (const Bridge& bridge : bridges_) {
-        const bool forth = bridge.to == id && bridge.from < id;
-        const bool back = bridge.from == id && bridge.to < id;
+        const auto is_known = [&](std::uint16_t other) { return other < id || other == kStill; };
+        const bool forth = bridge.to == id && is_known(bridge.from);
+        const bool back = bridge.from == id && is_known(bridge.to);
         if (!forth && !back) {
             continue;
         }
-        const std::size_t known = (forth ? bridge.from : bridge.to) - 1U;
-        if (input.components[known].pixels < kBridgeablePixels) {
+        const std::uint16_t other = forth ? bridge.from : bridge.to;
+        const bool stands = other == kStill;
+        const std::size_t known = other - 1U;
+        if (!stands && input.components[known].pixels < kBridgeablePixels) {
             continue;
         }
-        const int order = orders_[known] + (forth ? bridge.orders : -bridge.orders);
+        const int order =
+            (stands ? 0 : orders_[known]) + (forth ? bridge.orders : -bridge.orders);
         // Nothing is behind the background: that gap is no shadow.
         const bool behind =
-            !metric_ && input.front * (mean + order) < -static_cast<double>(kStandsOut);
+            !in_front(order) ||
+            (!metric_ && input.front * (mean + order) < -static_cast<double>(kStandsOut));
         if (!bridge.fits || behind) {
             bridge_misses_ += behind ? 0 : 1;
             continue;
         }
         bridged_.add(order);
-        if (ambiguous_[known] == 0) {
+        if (stands || ambiguous_[known] == 0) {
             sure_bridged_.add(order);
         }
     }
@@ -273,9 +380,6 @@ void ComponentOrders::vote_bridges(const Input& input, std::uint16_t id) noexcep
 
 void ComponentOrders::decide(std::size_t index) noexcept {
     const double samples = static_cast<double>(samples_.size());
-    const auto is_possible = [&](int order) {
-        return !metric_ || possible_.of(order) >= kPossibleShare * samples;
-    };
     int count = 0;
     int least = 0;
     int most = 0;
@@ -293,12 +397,13 @@ void ComponentOrders::decide(std::size_t index) noexcept {
     const bool doubted = shadow && tracked && bridged != before;
     doubts_[index] = doubted && doubt_ < kDoubts ? static_cast<std::uint8_t>(doubt_ + 1) : 0;
     bool sure = false;
-    int order = home_.best();
+    const bool largest = index == 0 && !moving_;
+    int order = largest ? home_.best() : newcomer();
     if (metric_ && count <= 1) {
         // Where none is possible the most of it is kept, and the volume cuts off the rest.
         order = possible_.best();
         sure = count == 1;
-    } else if (!metric_ && index == 0) {
+    } else if (!metric_ && largest) {
         sure = true;  // what most of the image is, is the background
     } else if (shadow && (!doubted || doubts_[index] == 0)) {
         order = bridged;
@@ -306,7 +411,7 @@ void ComponentOrders::decide(std::size_t index) noexcept {
     } else if (tracked) {
         order = before;
         sure = 2 * sure_before_.of(before) >= before_.of(before);
-    } else if (index == 0) {
+    } else if (largest) {
         // The same: the farthest that it can be.
         order = far_is_low_ ? least : most;
     } else if (!is_possible(order)) {
@@ -323,17 +428,22 @@ void ComponentOrders::choose(const Input& input) noexcept {
     orders_.assign(input.components.size(), 0);
     ambiguous_.assign(input.components.size(), 1);
     standing_out_ = 0.0;
+    front_ = metric_ ? (far_is_low_ ? 1.0 : -1.0) : input.front;
+    moving_ = !input.components.empty() && input.still_pixels > input.components[0].pixels;
     find_bridges(input);
     for (std::size_t i = 0; i < std::min(input.components.size(), kMostComponents); ++i) {
         doubt_ = 0;
         sample(input, input.components[i]);
         for (const Sample& s : samples_) {
             vote(input, s);
+            vote_behind(input, s);
         }
+        nearest_known_ = behind_.reached(kPossibleShare);
         vote_bridges(input, input.components[i].id);
         decide(i);
+        remember(input, i);
         for (Votes* votes :
-             {&home_, &possible_, &before_, &sure_before_, &bridged_, &sure_bridged_}) {
+             {&home_, &possible_, &before_, &sure_before_, &bridged_, &sure_bridged_, &behind_}) {
             votes->clear();
         }
         for (const Sample& s : samples_) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,8 @@ class ComponentOrders {
  public:
     /// Components after this many, the smallest, are put where their seeds say.
     static constexpr std::size_t kMostComponents = 256;
+    /// In component_before: what stood still.
+    static constexpr std::uint16_t kStill = kMaxPhaseComponents + 1;
 
     /// Allocates for all images to come.
     /// @param geometry null: values are heights above a background at 0
@@ -41,6 +44,11 @@ class ComponentOrders {
         ImageView<const std::uint16_t> component_before;
         /// Of heights: 1 where more phase is nearer, -1 where less is, 0 where that is not known.
         double front = 0.0;
+        /// Pixels that stand still, with all turns, NaN elsewhere: no component is there. Empty:
+        /// nothing is known of what stands still.
+        ImageView<const float> still_rad = {};
+        ImageView<const float> known_rad = {};  ///< StillScene::known_rad()
+        int still_pixels = 0;
     };
     /// Replaces the orders of the image before.
     void choose(const Input& input) noexcept;
@@ -51,6 +59,8 @@ class ComponentOrders {
     [[nodiscard]] bool ambiguous(std::size_t index) const noexcept {
         return ambiguous_[index] != 0;
     }
+    /// Of depths: farther away is less phase.
+    [[nodiscard]] bool far_is_low() const noexcept { return far_is_low_; }
     /// How far and on how many places pixels stand out from 0, turns; negative: behind it.
     [[nodiscard]] double standing_out() const noexcept { return standing_out_; }
 
@@ -70,6 +80,8 @@ class ComponentOrders {
         [[nodiscard]] int total() const noexcept { return total_; }
         /// Of the most votes, the least such; 0 where there are none.
         [[nodiscard]] int best() const noexcept;
+        /// The least order up to which so much of the votes are; `share` 0 ... 1.
+        [[nodiscard]] int reached(double share) const noexcept;
 
      private:
         std::vector<std::int32_t> counts_;
@@ -97,6 +109,14 @@ class ComponentOrders {
                                  std::uint16_t& id) const noexcept;
     void sample(const Input& input, const PhaseComponent& component) noexcept;
     void vote(const Input& input, const Sample& sample) noexcept;
+    /// That orders must be in front of what is known to be behind.
+    void vote_behind(const Input& input, const Sample& sample) noexcept;
+    [[nodiscard]] bool in_front(int order) const noexcept;
+    [[nodiscard]] bool is_possible(int order) const noexcept;
+    /// The order of something new that nothing is known of.
+    [[nodiscard]] int newcomer() const noexcept;
+    void remember(const Input& input, std::size_t index) noexcept;
+    [[nodiscard]] float known_behind(const Input& input, const Sample& sample) const noexcept;
     void vote_bridges(const Input& input, std::uint16_t id) noexcept;
     void decide(std::size_t index) noexcept;
 
@@ -113,7 +133,14 @@ class ComponentOrders {
     int doubt_ = 0;  ///< of the component at hand, a frame ago
     std::vector<Sample> samples_;
     std::vector<Bridge> bridges_;
-    Votes home_, possible_, before_, sure_before_, bridged_, sure_bridged_;
+    Votes home_, possible_, before_, sure_before_, bridged_, sure_bridged_, behind_;
+    double front_ = 0.0;   ///< Input::front, of depths too
+    int nearest_known_ = 0;  ///< of the component at hand: front_ times an order must reach it
+    bool moving_ = false;  ///< all components are of what moves; the rest stands still
+    /// How far away the largest surface is, from the volume's low turns, 0, to its high ones, 1:
+    /// what is before it hides it.
+    std::optional<float> backdrop_;
+    std::optional<float> recent_turns_;  ///< where the largest thing that moved was last
     int bridge_misses_ = 0;
     double standing_out_ = 0.0;
 };

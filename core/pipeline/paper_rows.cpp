@@ -169,10 +169,39 @@ void PaperDecoder::Impl::mask_results() noexcept {
     orders.forget();
 }
 
+// 1: more phase is nearer; -1: less is.
+double PaperDecoder::Impl::front_of_phase() const noexcept {
+    return geometry ? (orders.far_is_low() ? 1.0 : -1.0) : front;
+}
+
+// What stands still, beside the components.
+void PaperDecoder::Impl::write_still_row(int y) noexcept {
+    const float* still = scene->still_rad().row(y);
+    float* row_unwrapped = unwrapped.row(y);
+    std::uint16_t* ids = component.row(y);
+    for (int x = 0; x < size.width; ++x) {
+        const bool stands = still[x] == still[x];
+        row_unwrapped[x] = stands ? still[x] : row_unwrapped[x];
+        ids[x] = stands ? ComponentOrders::kStill : ids[x];
+    }
+}
+
+void PaperDecoder::Impl::learn_still() noexcept {
+    if (scene) {
+        scene->learn(std::as_const(unwrapped).view(), std::as_const(phase_map.modulation).view(),
+                     front_of_phase(), depth.stamp);
+    }
+}
+
 void PaperDecoder::Impl::write_row(int y) noexcept {
-    const float* phase = geometry ? phase_map.phase_rad.row(y) : difference.row(y);
+    const float* phase = scene      ? scene->moving_rad().row(y)
+                         : geometry ? std::as_const(phase_map.phase_rad).row(y)
+                                    : std::as_const(difference).row(y);
     float* row_unwrapped = unwrapped.row(y);
     unwrapper.write_row(y, phase, orders.orders(), row_unwrapped, component.row(y));
+    if (scene) {
+        write_still_row(y);
+    }
     DepthRow row;
     const double px_per_rad = period->period_px / kTurn_rad;
     if (geometry) {
@@ -209,14 +238,28 @@ void PaperDecoder::Impl::write_row(int y) noexcept {
 }
 
 void PaperDecoder::Impl::write_results() noexcept {
-    const ImageView<const float> phase =
+    ImageView<const float> phase =
         geometry ? std::as_const(phase_map.phase_rad).view() : std::as_const(difference).view();
+    if (scene) {
+        scene->divide(phase, std::as_const(phase_map.modulation).view());
+        phase = scene->moving_rad().view();
+    }
     const auto found = unwrapper.solve(phase, phase_map.modulation.view());
     unwrapped.swap(unwrapped_before);
     component.swap(component_before);
-    orders.choose({unwrapper, found, phase, std::as_const(background).view(),
-                   std::as_const(unwrapped_before).view(), std::as_const(component_before).view(),
-                   standing_out == 0.0 ? 0.0 : front});
+    ComponentOrders::Input input{unwrapper,
+                                 found,
+                                 phase,
+                                 std::as_const(background).view(),
+                                 std::as_const(unwrapped_before).view(),
+                                 std::as_const(component_before).view(),
+                                 standing_out == 0.0 ? 0.0 : front};
+    if (scene) {
+        input.still_rad = scene->still_rad().view();
+        input.known_rad = scene->known_rad().view();
+        input.still_pixels = scene->still_pixels();
+    }
+    orders.choose(input);
     if (!geometry) {
         standing_out =
             std::clamp(standing_out + orders.standing_out(), -kMostStandingOut, kMostStandingOut);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include <xtrack/decode_settings.hpp>
 #include <xtrack/depth.hpp>
 #include <xtrack/depth_decoder.hpp>
 #include <xtrack/frame.hpp>
@@ -42,6 +43,9 @@ struct PaperSettings {
     int min_component_px = 64;
     /// Whether points() is made.
     bool points = true;
+    /// Off: every image is unwrapped for itself, as in the paper. Else what has not moved keeps its
+    /// place, and only the rest is looked at anew. Taken by create() alone.
+    MotionHandling motion = MotionHandling::off;
 };
 
 /// @return invalid_argument that names the first setting out of its documented range
