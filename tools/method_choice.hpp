@@ -16,7 +16,8 @@ namespace xtrack::tools {
 /// What a simulated camera and these gestures ask of a method.
 [[nodiscard]] MethodNeeds needs_of(const SimSettings& settings, const GestureSettings& gestures);
 
-/// Makes a simulated projector show a method's patterns.
+/// Makes a simulated projector show a method's patterns. A method that is asked for by its name is
+/// given a camera that sees colour where it needs one.
 /// @param name a method's, or `auto`
 /// @return why it was chosen; invalid_argument for a name that is none; unsupported where the
 ///         method cannot carry the gestures on this camera

@@ -53,9 +53,6 @@ Result<Session> open(const RunOptions& run, SessionOptions options) {
         if (!shown) {
             return shown.error();
         }
-        if (!info(shown->method).metric) {
-            options.method = DecodeMethod::paper;
-        }
         fmt::print(stderr, "method {}: {}\n", info(shown->method).name, shown->reason);
     }
     auto rig = SimulatedRig::create(*settings);
