@@ -401,7 +401,7 @@ void ComponentOrders::decide(std::size_t index) noexcept {
     int order = largest ? home_.best() : newcomer();
     if (metric_ && count <= 1) {
         // Where none is possible the most of it is kept, and the volume cuts off the rest.
-        order = possible_.best();
+        order = count == 1 ? least : possible_.best();
         sure = count == 1;
     } else if (!metric_ && largest) {
         sure = true;  // what most of the image is, is the background
