@@ -26,13 +26,22 @@ constexpr float kStandsOut = 0.1F;
 constexpr int kLeastShadow_px = 2;
 constexpr int kShadowsOfImage = 3;  // a third of the image at most
 constexpr int kClear_px = 2;
+constexpr int kMostClear_px = 5;
 constexpr int kSlope_px = 4;
 // The fringe goes on across a shadow if it is off by no more, turns; a gap that is no shadow fits
 // by chance in a quarter of its lines.
 constexpr float kBridgeFit = 0.12F;
 constexpr int kLeastBridges = 6;
 constexpr double kBridgeShare = 0.6;
+// A border that motion blurs is off by more than that, but by less than half a fringe: then many
+// lines must agree.
+constexpr int kRoughBridges = 10;
+constexpr double kRoughShare = 0.8;
 constexpr std::size_t kMostBridges = 8192;
+// A surface goes on where it touches another without a shadow if its fringe does, and its light is
+// the same but for this factor; in so much of the contact.
+constexpr float kAlike = 1.2F;
+constexpr double kGoesOnShare = 0.7;
 // What moves smears its shadow's border: so many images on end must say that a component lies
 // elsewhere than it did.
 constexpr int kDoubts = 12;
@@ -92,7 +101,7 @@ ComponentOrders::ComponentOrders(Size image, Axis axis, const Triangulation* geo
     // Values of a component span at most the projector, and so do orders, both ways.
     const int reach = 2 * static_cast<int>(std::ceil(coded_length_px / period_px)) + 4;
     for (Votes* votes :
-         {&home_, &possible_, &before_, &sure_before_, &bridged_, &sure_bridged_, &behind_}) {
+         {&home_, &possible_, &before_, &sure_before_, &bridged_, &sure_bridged_, &behind_, &goes_on_, &rough_}) {
         votes->create(reach);
     }
     const auto samples =
@@ -145,62 +154,94 @@ float ComponentOrders::value_at(const Input& input, int x, int y,
     return kPerTurn * input.phase_rad.at(x, y) + static_cast<float>(place.turns);
 }
 
-// Where a projector's shadow lies between two surfaces, the ray that grazes one of them arrives at
-// the other: the projector's phase goes on across it, turns and all.
-void ComponentOrders::bridge_line(const Input& input, int line) noexcept {
-    const int length = along_x_ ? size_.width : size_.height;
-    const auto line_of = [&](const ImageView<const float>& image) {
-        return along_x_ ? image.row(line) : image.data + line;
+bool ComponentOrders::Line::stands(int i) const noexcept {
+    return still_rad != nullptr && std::isfinite(still_rad[i * next_still]);
+}
+
+bool ComponentOrders::Line::seen(int i) const noexcept {
+    return std::isfinite(phase_rad[i * next]);
+}
+
+ComponentOrders::Line ComponentOrders::line_of(const Input& input, int number) const noexcept {
+    const auto begin = [&](const ImageView<const float>& image) {
+        return image.empty() ? nullptr : along_x_ ? image.row(number) : image.data + number;
     };
-    const std::ptrdiff_t next = along_x_ ? 1 : input.phase_rad.stride;
-    const float* phase = line_of(input.phase_rad);
-    const bool stands = !input.still_rad.empty();
-    const std::ptrdiff_t next_still = along_x_ ? 1 : input.still_rad.stride;
-    const float* still = stands ? line_of(input.still_rad) : nullptr;
-    const auto raw_at = [&](int i, std::uint16_t& id) {
-        const int x = along_x_ ? i : line;
-        const int y = along_x_ ? line : i;
+    const auto step = [&](const ImageView<const float>& image) {
+        return along_x_ ? std::ptrdiff_t{1} : image.stride;
+    };
+    const ImageView<const float>& all = input.all_rad.empty() ? input.phase_rad : input.all_rad;
+    return {begin(all), begin(input.still_rad), begin(input.modulation),
+            step(all),  step(input.still_rad),  step(input.modulation),
+            number,     along_x_ ? size_.width : size_.height};
+}
+
+float ComponentOrders::edge(const Input& input, const Line& line, int border, int away,
+                            std::uint16_t& id) const noexcept {
+    const auto raw_at = [&](int i, std::uint16_t& of) {
+        const int x = along_x_ ? i : line.number;
+        const int y = along_x_ ? line.number : i;
         const float taken_off =
             input.reference_rad.empty() ? 0.0F : kPerTurn * input.reference_rad.at(x, y);
-        if (stands && std::isfinite(still[i * next_still])) {
-            id = kStill;
-            return kPerTurn * still[i * next_still] + taken_off;
+        if (line.stands(i)) {
+            of = kStill;
+            return kPerTurn * line.still_rad[i * line.next_still] + taken_off;
         }
-        return value_at(input, x, y, id) + taken_off;
+        return value_at(input, x, y, of) + taken_off;
     };
-    // The value at a border of the shadow, going by what lies `away` from it.
-    const auto edge = [&](int border, int away, std::uint16_t& id) {
-        std::uint16_t beyond = 0;
-        const float clear = raw_at(border + away * kClear_px, id);
-        const float far = raw_at(border + away * (kClear_px + kSlope_px), beyond);
-        id = id == beyond ? id : std::uint16_t{0};
-        constexpr float kShare = static_cast<float>(kClear_px) / kSlope_px;
-        return clear + kShare * (clear - far);
-    };
-    constexpr int kMargin = kClear_px + kSlope_px;
+    // Some pixels of the border may have been taken out.
+    int clear_px = kClear_px;
+    float clear = raw_at(border + away * clear_px, id);
+    while (id == 0 && clear_px < kMostClear_px) {
+        ++clear_px;
+        clear = raw_at(border + away * clear_px, id);
+    }
+    std::uint16_t beyond = 0;
+    const float far = raw_at(border + away * (clear_px + kSlope_px), beyond);
+    id = id == beyond ? id : std::uint16_t{0};
+    return clear + static_cast<float>(clear_px) / kSlope_px * (clear - far);
+}
+
+// Where a projector's shadow lies between two surfaces, the ray that grazes one of them arrives at
+// the other: the projector's phase goes on across it, turns and all. Where there is no shadow it
+// goes on within one surface alone, and so does the light.
+void ComponentOrders::add_bridge(const Input& input, const Line& line, int from, int to) noexcept {
+    Bridge bridge;
+    bridge.touch = to == from + 1;
+    const float left = edge(input, line, from, -1, bridge.from);
+    const float right = edge(input, line, to, 1, bridge.to);
+    if (bridge.from == bridge.to || bridge.from == 0 || bridge.to == 0 ||
+        !std::isfinite(left - right)) {
+        return;
+    }
+    const float orders = std::nearbyint(left - right);
+    bridge.orders = static_cast<std::int32_t>(orders);
+    bridge.fits = std::fabs(left - right - orders) <= kBridgeFit;
+    if (bridge.touch) {
+        const float a = line.modulation[(from - kClear_px) * line.next_modulation];
+        const float b = line.modulation[(to + kClear_px) * line.next_modulation];
+        bridge.fits = bridge.fits && a < kAlike * b && b < kAlike * a;
+    }
+    bridges_.push_back(bridge);
+}
+
+void ComponentOrders::bridge_line(const Input& input, int number) noexcept {
+    const Line line = line_of(input, number);
+    constexpr int kMargin = kMostClear_px + kSlope_px;
     int last_seen = -1;
-    for (int i = 0; i < length; ++i) {
-        if (std::isnan(phase[i * next]) && !(stands && std::isfinite(still[i * next_still]))) {
+    for (int i = 0; i < line.length; ++i) {
+        if (!line.seen(i)) {
             continue;
         }
         const int gap = i - last_seen - 1;
         const int from = last_seen;
         last_seen = i;
-        if (gap < kLeastShadow_px || gap > length / kShadowsOfImage || from < kMargin ||
-            i + kMargin >= length || bridges_.size() >= kMostBridges) {
+        const bool touch = gap == 0 && line.modulation != nullptr && from >= 0 &&
+                           line.stands(from) != line.stands(i);  // or an outline, which is of none
+        if (!(touch || (gap >= kLeastShadow_px && gap <= line.length / kShadowsOfImage)) ||
+            from < kMargin || i + kMargin >= line.length || bridges_.size() >= kMostBridges) {
             continue;
         }
-        Bridge bridge;
-        const float left = edge(from, -1, bridge.from);
-        const float right = edge(i, 1, bridge.to);
-        if (bridge.from == bridge.to || bridge.from == 0 || bridge.to == 0 ||
-            !std::isfinite(left - right)) {
-            continue;
-        }
-        const float orders = std::nearbyint(left - right);
-        bridge.orders = static_cast<std::int32_t>(orders);
-        bridge.fits = std::fabs(left - right - orders) <= kBridgeFit;
-        bridges_.push_back(bridge);
+        add_bridge(input, line, from, i);
     }
 }
 
@@ -344,6 +385,7 @@ void ComponentOrders::remember(const Input& input, std::size_t index) noexcept {
 
 void ComponentOrders::vote_bridges(const Input& input, std::uint16_t id) noexcept {
     bridge_misses_ = 0;
+    touch_misses_ = 0;
     double mean = 0.0;
     for (const Sample& s : samples_) {
         mean += static_cast<double>(s.value) / static_cast<double>(samples_.size());
@@ -363,10 +405,16 @@ void ComponentOrders::vote_bridges(const Input& input, std::uint16_t id) noexcep
         }
         const int order =
             (stands ? 0 : orders_[known]) + (forth ? bridge.orders : -bridge.orders);
+        if (bridge.touch) {
+            goes_on_.add(order, bridge.fits ? 1 : 0);
+            touch_misses_ += bridge.fits ? 0 : 1;
+            continue;
+        }
         // Nothing is behind the background: that gap is no shadow.
         const bool behind =
             !in_front(order) ||
             (!metric_ && input.front * (mean + order) < -static_cast<double>(kStandsOut));
+        rough_.add(order, behind ? 0 : 1);
         if (!bridge.fits || behind) {
             bridge_misses_ += behind ? 0 : 1;
             continue;
@@ -394,23 +442,37 @@ void ComponentOrders::decide(std::size_t index) noexcept {
     const bool shadow = bridged_.of(bridged) >= kLeastBridges && is_possible(bridged) &&
                         bridged_.of(bridged) >= kBridgeShare * (bridged_.total() + bridge_misses_);
     const bool tracked = before_.of(before) >= kBeforeShare * samples && is_possible(before);
-    const bool doubted = shadow && tracked && bridged != before;
+    const bool sure_before = tracked && 2 * sure_before_.of(before) >= before_.of(before);
+    const int rough = rough_.best();
+    const bool roughly = rough_.of(rough) >= kRoughBridges && is_possible(rough) &&
+                         rough_.of(rough) >= kRoughShare * rough_.total();
+    const bool doubted = tracked && ((shadow && bridged != before) || (roughly && rough != before));
     doubts_[index] = doubted && doubt_ < kDoubts ? static_cast<std::uint8_t>(doubt_ + 1) : 0;
     bool sure = false;
     const bool largest = index == 0 && !moving_;
     int order = largest ? home_.best() : newcomer();
-    if (metric_ && count <= 1) {
+    const int on = goes_on_.best();
+    const bool goes_on = goes_on_.of(on) >= kLeastBridges &&
+                         goes_on_.of(on) >= kGoesOnShare * (goes_on_.total() + touch_misses_);
+    if (goes_on) {
+        // What something that moved has uncovered; that lay before what is known.
+        order = on;
+        sure = true;
+    } else if (metric_ && count <= 1) {
         // Where none is possible the most of it is kept, and the volume cuts off the rest.
         order = count == 1 ? least : possible_.best();
         sure = count == 1;
     } else if (!metric_ && largest) {
         sure = true;  // what most of the image is, is the background
-    } else if (shadow && (!doubted || doubts_[index] == 0)) {
+    } else if (shadow && doubts_[index] == 0) {
         order = bridged;
         sure = 2 * sure_bridged_.of(bridged) >= bridged_.of(bridged);
+    } else if (roughly && (doubts_[index] == 0 || !sure_before)) {
+        order = rough;
+        sure = tracked && rough == before;
     } else if (tracked) {
         order = before;
-        sure = 2 * sure_before_.of(before) >= before_.of(before);
+        sure = sure_before;
     } else if (largest) {
         // The same: the farthest that it can be.
         order = far_is_low_ ? least : most;
@@ -436,14 +498,16 @@ void ComponentOrders::choose(const Input& input) noexcept {
         sample(input, input.components[i]);
         for (const Sample& s : samples_) {
             vote(input, s);
-            vote_behind(input, s);
+            if (i > 0 || moving_) {
+                vote_behind(input, s);
+            }
         }
         nearest_known_ = behind_.reached(kPossibleShare);
         vote_bridges(input, input.components[i].id);
         decide(i);
         remember(input, i);
         for (Votes* votes :
-             {&home_, &possible_, &before_, &sure_before_, &bridged_, &sure_bridged_, &behind_}) {
+             {&home_, &possible_, &before_, &sure_before_, &bridged_, &sure_bridged_, &behind_, &goes_on_, &rough_}) {
             votes->clear();
         }
         for (const Sample& s : samples_) {

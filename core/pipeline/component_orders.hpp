@@ -48,6 +48,8 @@ class ComponentOrders {
         /// nothing is known of what stands still.
         ImageView<const float> still_rad = {};
         ImageView<const float> known_rad = {};  ///< StillScene::known_rad()
+        ImageView<const float> modulation = {};
+        ImageView<const float> all_rad = {};  ///< phase_rad, and all that was taken out of it
         int still_pixels = 0;
     };
     /// Replaces the orders of the image before.
@@ -90,13 +92,32 @@ class ComponentOrders {
         int high_ = -1;
         int total_ = 0;
     };
-    /// Two components on either side of a shadow.
+    /// Two components on either side of a shadow; or where one touches what stands still.
     struct Bridge {
         std::uint16_t from = 0;
         std::uint16_t to = 0;
         std::int32_t orders = 0;  ///< of `to` less that of `from`
-        bool fits = false;        ///< the fringe goes on
+        bool fits = false;        ///< the fringe goes on; where they touch, the light as well
+        bool touch = false;
     };
+    /// What there is on a line of pixels.
+    struct Line {
+        const float* phase_rad = nullptr;  ///< shadows have none
+        const float* still_rad = nullptr;
+        const float* modulation = nullptr;
+        std::ptrdiff_t next = 0;  ///< from a pixel to the next, of each
+        std::ptrdiff_t next_still = 0;
+        std::ptrdiff_t next_modulation = 0;
+        int number = 0;
+        int length = 0;
+        [[nodiscard]] bool stands(int i) const noexcept;
+        [[nodiscard]] bool seen(int i) const noexcept;
+    };
+    [[nodiscard]] Line line_of(const Input& input, int number) const noexcept;
+    /// The value at a border, going by what lies `away` (1 or -1) from it.
+    [[nodiscard]] float edge(const Input& input, const Line& line, int border, int away,
+                             std::uint16_t& id) const noexcept;
+    void add_bridge(const Input& input, const Line& line, int from, int to) noexcept;
     struct Sample {
         int x = 0;
         int y = 0;
@@ -133,7 +154,8 @@ class ComponentOrders {
     int doubt_ = 0;  ///< of the component at hand, a frame ago
     std::vector<Sample> samples_;
     std::vector<Bridge> bridges_;
-    Votes home_, possible_, before_, sure_before_, bridged_, sure_bridged_, behind_;
+    Votes home_, possible_, before_, sure_before_, bridged_, sure_bridged_, behind_, goes_on_, rough_;
+    int touch_misses_ = 0;
     double front_ = 0.0;   ///< Input::front, of depths too
     int nearest_known_ = 0;  ///< of the component at hand: front_ times an order must reach it
     bool moving_ = false;  ///< all components are of what moves; the rest stands still

@@ -238,10 +238,11 @@ void PaperDecoder::Impl::write_row(int y) noexcept {
 }
 
 void PaperDecoder::Impl::write_results() noexcept {
-    ImageView<const float> phase =
+    const ImageView<const float> all =
         geometry ? std::as_const(phase_map.phase_rad).view() : std::as_const(difference).view();
+    ImageView<const float> phase = all;
     if (scene) {
-        scene->divide(phase, std::as_const(phase_map.modulation).view());
+        scene->divide(all, std::as_const(phase_map.modulation).view());
         phase = scene->moving_rad().view();
     }
     const auto found = unwrapper.solve(phase, phase_map.modulation.view());
@@ -257,6 +258,8 @@ void PaperDecoder::Impl::write_results() noexcept {
     if (scene) {
         input.still_rad = scene->still_rad().view();
         input.known_rad = scene->known_rad().view();
+        input.modulation = std::as_const(phase_map.modulation).view();
+        input.all_rad = all;
         input.still_pixels = scene->still_pixels();
     }
     orders.choose(input);

@@ -21,9 +21,10 @@ constexpr float kSame_rad = 0.4F;
 constexpr float kBrighter = 1.25F;
 constexpr float kDarker = 0.3F;
 constexpr float kNoise_grey = 2.0F;
-// How long a thing must rest to be taken in: where nothing is known or it lies behind what is; where
-// only its light is another; where it lies before it.
-constexpr float kNew_ms = 250.0F;
+// How long a thing must rest to be taken in: where nothing is known; where it lies behind what is;
+// where only its light is another; where it lies before it.
+constexpr float kNew_ms = 100.0F;
+constexpr float kBehind_ms = 250.0F;
 constexpr float kRelit_ms = 500.0F;
 constexpr float kBefore_ms = 10000.0F;
 // Share of the way to a new value of the same thing, each time.
@@ -32,6 +33,14 @@ constexpr float kDrift = 0.1F;
 constexpr unsigned kEvery = 4;
 // A stream that stalled proves nothing.
 constexpr float kLongest_ms = 200.0F;
+
+// Across two pixels light changes by no more within one surface: a share of it, and noise.
+constexpr float kEdgeShare = 0.22F;
+constexpr float kEdge_grey = 3.0F;
+
+bool is_edge(float a, float b) noexcept {
+    return std::fabs(a - b) > 0.5F * kEdgeShare * (a + b) + kEdge_grey;
+}
 
 bool as_bright(float modulation, float known) noexcept {
     return modulation <= kBrighter * known + kNoise_grey && modulation >= kDarker * known;
@@ -72,6 +81,21 @@ void StillScene::divide(ImageView<const float> phase_rad,
         }
         still_pixels_ += count;
     }
+    cut_edges(modulation);
+}
+
+// What moves is cut out along its outline, whose pixels are of two surfaces.
+void StillScene::cut_edges(ImageView<const float> modulation) noexcept {
+    for (int y = 1; y + 1 < size_.height; ++y) {
+        const float* above = modulation.row(y - 1);
+        const float* here = modulation.row(y);
+        const float* below = modulation.row(y + 1);
+        float* moving = moving_.row(y);
+        for (int x = 1; x + 1 < size_.width; ++x) {
+            const bool edge = is_edge(here[x - 1], here[x + 1]) || is_edge(above[x], below[x]);
+            moving[x] = edge ? kNone : moving[x];
+        }
+    }
 }
 
 void StillScene::learn_pixel(Rival& rival, int x, int y, float phase_rad, float modulation,
@@ -96,7 +120,10 @@ void StillScene::learn_pixel(Rival& rival, int x, int y, float phase_rad, float 
     rival.modulation += kDrift * (modulation - rival.modulation);
     rival.seen_ms += elapsed_ms;
     const float before = front * (rival.phase_rad - known);
-    const float hold = before > kSame_rad ? kBefore_ms : before > -kSame_rad ? kRelit_ms : kNew_ms;
+    const float hold = before > kSame_rad    ? kBefore_ms
+                       : before >= -kSame_rad ? kRelit_ms
+                       : before < -kSame_rad  ? kBehind_ms
+                                              : kNew_ms;
     if (rival.seen_ms >= hold) {
         known = rival.phase_rad;
         light = rival.modulation;

@@ -26,7 +26,7 @@ class StillScene {
 
     /// What divide() took for still: the phase with its turns, rad; NaN elsewhere.
     [[nodiscard]] const Image<float>& still_rad() const noexcept { return still_; }
-    /// The rest: the phase as it came; NaN elsewhere.
+    /// The rest, without its outline: the phase as it came; NaN elsewhere.
     [[nodiscard]] const Image<float>& moving_rad() const noexcept { return moving_; }
     [[nodiscard]] int still_pixels() const noexcept { return still_pixels_; }
     /// What is known of each pixel, whatever is before it now, rad; NaN: nothing.
@@ -46,6 +46,7 @@ class StillScene {
         float modulation = 0.0F;
         float seen_ms = 0.0F;
     };
+    void cut_edges(ImageView<const float> modulation) noexcept;
     void learn_pixel(Rival& rival, int x, int y, float phase_rad, float modulation, float front,
                      float elapsed_ms) noexcept;
 
