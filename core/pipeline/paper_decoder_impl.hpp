@@ -40,7 +40,10 @@ struct PaperDecoder::Impl {
     [[nodiscard]] double front_of_phase() const noexcept;
     void write_still_row(int y) noexcept;
     void learn_still() noexcept;
-    void write_row(int y) noexcept;
+    void write_row(int y) noexcept;  ///< turns and components
+    void fill_outlines() noexcept;
+    void fill_outline(int x, int y) noexcept;
+    void write_depth_row(int y) noexcept;
     void mask_results() noexcept;
     void stamp_results() noexcept;
 

@@ -38,6 +38,10 @@ constexpr float kLongest_ms = 200.0F;
 constexpr float kEdgeShare = 0.22F;
 constexpr float kEdge_grey = 3.0F;
 
+// How far apart pixels are of which one goes on from the other, px, and its light, as a factor.
+constexpr int kReach_px = 3;
+constexpr float kAlike = 1.2F;
+
 bool is_edge(float a, float b) noexcept {
     return std::fabs(a - b) > 0.5F * kEdgeShare * (a + b) + kEdge_grey;
 }
@@ -63,6 +67,7 @@ void StillScene::divide(ImageView<const float> phase_rad,
     row.period_px = kTurn_rad;  // coordinates that are phases
     row.tolerance = static_cast<float>(static_cast<double>(kSame_rad) / kTurn_rad);
     still_pixels_ = 0;
+    int unknown = 0;
     for (int y = 0; y < size_.height; ++y) {
         float* still = still_.row(y);
         row.phase_rad = phase_rad.row(y);
@@ -78,10 +83,61 @@ void StillScene::divide(ImageView<const float> phase_rad,
             still[x] = same ? still[x] : kNone;
             moving[x] = same ? kNone : row.phase_rad[x];
             count += same ? 1 : 0;
+            unknown += row.reference_px[x] == row.reference_px[x] || row.phase_rad[x] != row.phase_rad[x] ? 0 : 1;
         }
         still_pixels_ += count;
     }
+    if (still_pixels_ > 0 && unknown > 0) {
+        uncover(phase_rad, modulation);
+    }
     cut_edges(modulation);
+}
+
+// What nobody has seen yet, as something was before it, is taken for still where it goes on from
+// what is still beside it, in phase and in light. Over a few pixels, as borders are soft.
+void StillScene::grow(int x, int y, int dx, int dy, ImageView<const float> phase_rad,
+                      ImageView<const float> modulation) noexcept {
+    const int near_x = x - kReach_px * dx;
+    const int near_y = y - kReach_px * dy;
+    const float near = still_.at(near_x, near_y);
+    const float far = still_.at(near_x - kReach_px * dx, near_y - kReach_px * dy);
+    const float wanted = 2.0F * near - far;
+    const float off = std::remainder(phase_rad.at(x, y) - wanted, static_cast<float>(kTurn_rad));
+    const float here = modulation.at(x, y);
+    const float there = modulation.at(near_x, near_y);
+    if (std::fabs(off) < kSame_rad && here < kAlike * there && there < kAlike * here) {
+        still_.at(x, y) = wanted + off;
+        moving_.at(x, y) = kNone;
+        ++still_pixels_;
+    }
+}
+
+void StillScene::uncover(ImageView<const float> phase_rad,
+                         ImageView<const float> modulation) noexcept {
+    constexpr int kMargin = 2 * kReach_px;
+    const auto wanted = [&](int x, int y) {
+        return std::isnan(known_.at(x, y)) && !std::isnan(moving_.at(x, y));
+    };
+    for (int y = 0; y < size_.height; ++y) {
+        for (int x = 0; x < size_.width; ++x) {
+            if (x >= kMargin && wanted(x, y)) {
+                grow(x, y, 1, 0, phase_rad, modulation);
+            }
+            if (y >= kMargin && wanted(x, y)) {
+                grow(x, y, 0, 1, phase_rad, modulation);
+            }
+        }
+    }
+    for (int y = size_.height - 1; y >= 0; --y) {
+        for (int x = size_.width - 1; x >= 0; --x) {
+            if (x + kMargin < size_.width && wanted(x, y)) {
+                grow(x, y, -1, 0, phase_rad, modulation);
+            }
+            if (y + kMargin < size_.height && wanted(x, y)) {
+                grow(x, y, 0, -1, phase_rad, modulation);
+            }
+        }
+    }
 }
 
 // What moves is cut out along its outline, whose pixels are of two surfaces.
@@ -131,8 +187,9 @@ void StillScene::learn_pixel(Rival& rival, int x, int y, float phase_rad, float 
     }
 }
 
-void StillScene::learn(ImageView<const float> unwrapped_rad, ImageView<const float> modulation,
-                       double front, Stamp stamp) noexcept {
+void StillScene::learn(ImageView<const float> unwrapped_rad,
+                       ImageView<const std::uint16_t> component,
+                       ImageView<const float> modulation, double front, Stamp stamp) noexcept {
     if (images_++ % kEvery != 0) {
         return;
     }
@@ -142,9 +199,10 @@ void StillScene::learn(ImageView<const float> unwrapped_rad, ImageView<const flo
     for (int y = 0; y < size_.height; ++y) {
         const float* phase = unwrapped_rad.row(y);
         const float* light = modulation.row(y);
+        const std::uint16_t* ids = component.row(y);
         Rival* rivals = rivals_.row(y);
         for (int x = 0; x < size_.width; ++x) {
-            if (phase[x] == phase[x]) {  // a shadow says nothing of the surface in it
+            if (ids[x] != 0) {  // a shadow says nothing of the surface in it
                 learn_pixel(rivals[x], x, y, phase[x], light[x], static_cast<float>(front),
                             elapsed_ms);
             }

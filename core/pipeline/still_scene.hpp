@@ -33,11 +33,11 @@ class StillScene {
     [[nodiscard]] const Image<float>& known_rad() const noexcept { return known_; }
 
     /// Takes in the image that was divided last, now that its turns are known.
-    /// @param unwrapped_rad NaN = none
+    /// @param component 0 = nothing to learn; elsewhere there is a phase
     /// @param front 1: more phase is nearer; -1: less is
     /// @param stamp of the image; must not decrease
-    void learn(ImageView<const float> unwrapped_rad, ImageView<const float> modulation,
-               double front, Stamp stamp) noexcept;
+    void learn(ImageView<const float> unwrapped_rad, ImageView<const std::uint16_t> component,
+               ImageView<const float> modulation, double front, Stamp stamp) noexcept;
     void forget() noexcept;
 
  private:
@@ -46,6 +46,9 @@ class StillScene {
         float modulation = 0.0F;
         float seen_ms = 0.0F;
     };
+    void uncover(ImageView<const float> phase_rad, ImageView<const float> modulation) noexcept;
+    void grow(int x, int y, int dx, int dy, ImageView<const float> phase_rad,
+              ImageView<const float> modulation) noexcept;
     void cut_edges(ImageView<const float> modulation) noexcept;
     void learn_pixel(Rival& rival, int x, int y, float phase_rad, float modulation, float front,
                      float elapsed_ms) noexcept;
