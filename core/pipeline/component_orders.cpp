@@ -142,7 +142,7 @@ void ComponentOrders::forget() noexcept {
     orders_.clear();
     ambiguous_.clear();
     doubts_.clear();
-    recent_turns_.reset();
+    recent_.reset();
     backdrop_.reset();
     standing_out_ = 0.0;
 }
@@ -305,15 +305,30 @@ void ComponentOrders::vote(const Input& input, const Sample& s) noexcept {
     }
 }
 
-// What a pixel shows when nothing is before it, turns; NaN: nobody knows.
-float ComponentOrders::known_behind(const Input& input, const Sample& s) const noexcept {
-    const float known = kPerTurn * input.known_rad.at(s.x, s.y);
-    if (std::isfinite(known) || !metric_ || !backdrop_) {
-        return known;
+// Turns that a pixel shows of what is so far away: of depths a share of the volume, of heights turns.
+float ComponentOrders::turns_at(const Sample& s, float distance) const noexcept {
+    if (!metric_) {
+        return distance;
     }
     const float low = low_turns_.at(s.x / kGrid_px, s.y / kGrid_px);
     const float high = high_turns_.at(s.x / kGrid_px, s.y / kGrid_px);
-    return low + *backdrop_ * (high - low);
+    return low + distance * (high - low);
+}
+
+// The inverse: of the component at hand with this order, its mean.
+float ComponentOrders::distance_of(int order) const noexcept {
+    float sum = 0.0F;
+    for (const Sample& s : samples_) {
+        const float zero = turns_at(s, 0.0F);
+        sum += (s.value + static_cast<float>(order) - zero) / (turns_at(s, 1.0F) - zero);
+    }
+    return sum / static_cast<float>(samples_.size());
+}
+
+// What a pixel shows when nothing is before it, turns; NaN: nobody knows.
+float ComponentOrders::known_behind(const Input& input, const Sample& s) const noexcept {
+    const float known = kPerTurn * input.known_rad.at(s.x, s.y);
+    return std::isfinite(known) || !backdrop_ ? known : turns_at(s, *backdrop_);
 }
 
 void ComponentOrders::vote_behind(const Input& input, const Sample& s) noexcept {
@@ -339,12 +354,13 @@ bool ComponentOrders::is_possible(int order) const noexcept {
 
 // Where the last thing was that moved; else the farthest place before what stands still.
 int ComponentOrders::newcomer() const noexcept {
-    if (recent_turns_) {
-        double mean = 0.0;
+    if (recent_) {
+        float off = 0.0F;
         for (const Sample& s : samples_) {
-            mean += static_cast<double>(s.value) / static_cast<double>(samples_.size());
+            off += turns_at(s, *recent_) - s.value;
         }
-        const auto order = static_cast<int>(std::lround(static_cast<double>(*recent_turns_) - mean));
+        const auto order =
+            static_cast<int>(std::lround(off / static_cast<float>(samples_.size())));
         if (is_possible(order)) {
             return order;
         }
@@ -361,26 +377,10 @@ int ComponentOrders::newcomer() const noexcept {
 
 // The largest thing that moves is where others will be, or it itself if it is lost for a while.
 void ComponentOrders::remember(const Input& input, std::size_t index) noexcept {
-    if (index != 0 || input.components[0].pixels < kBridgeablePixels) {
+    if (index != 0 || input.components[0].pixels < kBridgeablePixels || (!moving_ && !metric_)) {
         return;
     }
-    double mean = 0.0;
-    double share = 0.0;
-    for (const Sample& s : samples_) {
-        mean += static_cast<double>(s.value) / static_cast<double>(samples_.size());
-        if (metric_ && !moving_) {
-            const float low = low_turns_.at(s.x / kGrid_px, s.y / kGrid_px);
-            const float high = high_turns_.at(s.x / kGrid_px, s.y / kGrid_px);
-            share += static_cast<double>((s.value + static_cast<float>(orders_[index]) - low) /
-                                         (high - low)) /
-                     static_cast<double>(samples_.size());
-        }
-    }
-    if (metric_ && !moving_) {
-        backdrop_ = static_cast<float>(share);
-        return;
-    }
-    recent_turns_ = static_cast<float>(mean + orders_[index]);
+    (moving_ ? recent_ : backdrop_) = distance_of(orders_[index]);
 }
 
 void ComponentOrders::vote_bridges(const Input& input, std::uint16_t id) noexcept {
@@ -426,7 +426,17 @@ void ComponentOrders::vote_bridges(const Input& input, std::uint16_t id) noexcep
     }
 }
 
-void ComponentOrders::decide(std::size_t index) noexcept {
+// True of lesser things at the largest one that moves.
+bool ComponentOrders::beside_largest(const Input& input, std::size_t index) const noexcept {
+    constexpr int kBeside_px = 12;
+    const PhaseComponent& a = input.components[0];
+    const PhaseComponent& b = input.components[index];
+    return moving_ && index > 0 && a.pixels >= kBridgeablePixels && 2 * b.pixels < a.pixels &&
+           b.left_px <= a.right_px + kBeside_px && a.left_px <= b.right_px + kBeside_px &&
+           b.top_px <= a.bottom_px + kBeside_px && a.top_px <= b.bottom_px + kBeside_px;
+}
+
+void ComponentOrders::decide(const Input& input, std::size_t index) noexcept {
     const double samples = static_cast<double>(samples_.size());
     int count = 0;
     int least = 0;
@@ -467,6 +477,10 @@ void ComponentOrders::decide(std::size_t index) noexcept {
     } else if (shadow && doubts_[index] == 0) {
         order = bridged;
         sure = 2 * sure_bridged_.of(bridged) >= bridged_.of(bridged);
+    } else if (beside_largest(input, index) && is_possible(newcomer())) {
+        // A finger that was cut off: a fringe is longer than a hand.
+        order = newcomer();
+        sure = ambiguous_[0] == 0;
     } else if (roughly && (doubts_[index] == 0 || !sure_before)) {
         order = rough;
         sure = tracked && rough == before;
@@ -504,7 +518,7 @@ void ComponentOrders::choose(const Input& input) noexcept {
         }
         nearest_known_ = behind_.reached(kPossibleShare);
         vote_bridges(input, input.components[i].id);
-        decide(i);
+        decide(input, i);
         remember(input, i);
         for (Votes* votes :
              {&home_, &possible_, &before_, &sure_before_, &bridged_, &sure_bridged_, &behind_, &goes_on_, &rough_}) {

@@ -137,9 +137,12 @@ class ComponentOrders {
     /// The order of something new that nothing is known of.
     [[nodiscard]] int newcomer() const noexcept;
     void remember(const Input& input, std::size_t index) noexcept;
+    [[nodiscard]] float turns_at(const Sample& sample, float distance) const noexcept;
+    [[nodiscard]] float distance_of(int order) const noexcept;
     [[nodiscard]] float known_behind(const Input& input, const Sample& sample) const noexcept;
     void vote_bridges(const Input& input, std::uint16_t id) noexcept;
-    void decide(std::size_t index) noexcept;
+    [[nodiscard]] bool beside_largest(const Input& input, std::size_t index) const noexcept;
+    void decide(const Input& input, std::size_t index) noexcept;
 
     Size size_;
     bool along_x_ = true;
@@ -159,10 +162,10 @@ class ComponentOrders {
     double front_ = 0.0;   ///< Input::front, of depths too
     int nearest_known_ = 0;  ///< of the component at hand: front_ times an order must reach it
     bool moving_ = false;  ///< all components are of what moves; the rest stands still
-    /// How far away the largest surface is, from the volume's low turns, 0, to its high ones, 1:
-    /// what is before it hides it.
+    /// How far away the largest surface is that all is before; empty: heights are before 0, or
+    /// nobody knows. And the largest thing that moved last.
     std::optional<float> backdrop_;
-    std::optional<float> recent_turns_;  ///< where the largest thing that moved was last
+    std::optional<float> recent_;
     int bridge_misses_ = 0;
     double standing_out_ = 0.0;
 };
