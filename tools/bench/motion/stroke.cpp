@@ -145,10 +145,32 @@ Result<Stroke> simulate_stroke(MotionCamera camera, const PatternSequence& patte
     return stroke;
 }
 
+Result<MotionDecoder> MotionDecoder::create(const Rig& rig, const PatternSequence& patterns,
+                                            const DecodeSettings& settings) {
+    MotionDecoder decoder;
+    auto by_patterns = DepthDecoder::create(rig, patterns, rig.camera.size, settings);
+    if (by_patterns) {
+        decoder.by_patterns_ = *std::move(by_patterns);
+        return decoder;
+    }
+    if (patterns.patterns.size() != 1) {
+        return by_patterns.error();
+    }
+    PaperSettings in_space;
+    in_space.points = false;
+    in_space.motion = settings.motion;
+    auto made = PaperDecoder::create(patterns, rig.camera.size, in_space, &rig);
+    if (!made) {
+        return made.error();
+    }
+    decoder.in_space_ = *std::move(made);
+    return decoder;
+}
+
 Result<HandAccuracy> measure_stroke(const Stroke& stroke, const PatternSequence& patterns,
                                     const DecodeSettings& settings) {
     const Size size = stroke.decoder_rig.camera.size;
-    auto decoder = DepthDecoder::create(stroke.decoder_rig, patterns, size, settings);
+    auto decoder = MotionDecoder::create(stroke.decoder_rig, patterns, settings);
     if (!decoder) {
         return decoder.error();
     }
@@ -157,7 +179,7 @@ Result<HandAccuracy> measure_stroke(const Stroke& stroke, const PatternSequence&
     };
     HandAccuracy all;
     for (const FramePtr& frame : stroke.frames) {
-        if (decoder->push(frame).state != DecodeState::depth_ready) {
+        if (decoder->push(frame) != DecodeState::depth_ready) {
             continue;
         }
         const DepthFrame& depth = decoder->depth();

@@ -4,10 +4,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
+#include <xtrack/depth_decoder.hpp>
 #include <xtrack/frame.hpp>
+#include <xtrack/paper_decoder.hpp>
 #include <xtrack/result.hpp>
 #include <xtrack/sim.hpp>
 
@@ -44,6 +47,25 @@ struct Stroke {
     Rig decoder_rig;               ///< what calibration knows of the rig
 };
 
+/// As sessions decode: a pattern that never changes, and whose order nothing gives, in space.
+class MotionDecoder {
+ public:
+    /// @return an Error of DepthDecoder::create()
+    [[nodiscard]] static Result<MotionDecoder> create(const Rig& rig,
+                                                      const PatternSequence& patterns,
+                                                      const DecodeSettings& settings);
+    [[nodiscard]] DecodeState push(const FramePtr& frame) noexcept {
+        return (in_space_ ? in_space_->push(frame) : by_patterns_->push(frame)).state;
+    }
+    [[nodiscard]] const DepthFrame& depth() const noexcept {
+        return in_space_ ? in_space_->depth() : by_patterns_->depth();
+    }
+
+ private:
+    std::optional<DepthDecoder> by_patterns_;
+    std::optional<PaperDecoder> in_space_;  ///< either this or the other
+};
+
 /// @param velocity_mmps camera frame
 /// @param seed of noise and sway
 /// @return an Error of SimulatedRig::create()
@@ -53,7 +75,7 @@ struct Stroke {
 
 /// Decodes a stroke and compares every depth image that is registered to a frame with truth. Where
 /// there is no such image at all, the hand is missing.
-/// @return an Error of DepthDecoder::create()
+/// @return an Error of MotionDecoder::create()
 [[nodiscard]] Result<HandAccuracy> measure_stroke(const Stroke& stroke,
                                                   const PatternSequence& patterns,
                                                   const DecodeSettings& settings);
