@@ -29,8 +29,9 @@ constexpr float kRelit_ms = 500.0F;
 constexpr float kBefore_ms = 10000.0F;
 // Share of the way to a new value of the same thing, each time.
 constexpr float kDrift = 0.1F;
-// It learns from one in so many images.
+// It learns from one in so many images, at first from all.
 constexpr unsigned kEvery = 4;
+constexpr unsigned kAtFirst = 30;
 // A stream that stalled proves nothing.
 constexpr float kLongest_ms = 200.0F;
 
@@ -190,7 +191,7 @@ void StillScene::learn_pixel(Rival& rival, int x, int y, float phase_rad, float 
 void StillScene::learn(ImageView<const float> unwrapped_rad,
                        ImageView<const std::uint16_t> component,
                        ImageView<const float> modulation, double front, Stamp stamp) noexcept {
-    if (images_++ % kEvery != 0) {
+    if (images_++ > kAtFirst && images_ % kEvery != 0) {
         return;
     }
     const double since_s = images_ > 1 ? to_seconds(stamp - last_stamp_) : 0.0;

@@ -42,6 +42,9 @@ inline constexpr std::array<MotionCamera, 3> kMotionCameras{
 /// One hand that crosses the middle of the view at constant velocity, 600 mm away, before a wall at
 /// 900 mm.
 struct Stroke {
+    /// Half a second of the room without a hand, earlier: of a pattern that never changes, whose
+    /// order comes from what is known of the room. Else none.
+    std::vector<FramePtr> room;
     std::vector<FramePtr> frames;  ///< from before the hand is in view
     std::vector<SimTruth> truths;  ///< of those frames in which it is near the middle
     Rig decoder_rig;               ///< what calibration knows of the rig
