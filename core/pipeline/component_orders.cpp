@@ -37,6 +37,8 @@ constexpr double kBridgeShare = 0.6;
 // lines must agree.
 constexpr int kRoughBridges = 10;
 constexpr double kRoughShare = 0.8;
+constexpr int kStrongBridges = 12;
+constexpr double kStrongShare = 0.9;
 constexpr std::size_t kMostBridges = 8192;
 // A surface goes on where it touches another without a shadow if its fringe does, and its light is
 // the same but for this factor; in so much of the contact.
@@ -45,6 +47,7 @@ constexpr double kGoesOnShare = 0.7;
 // What moves smears its shadow's border: so many images on end must say that a component lies
 // elsewhere than it did.
 constexpr int kDoubts = 12;
+constexpr int kStrongDoubts = 2;  // where many lines say the same
 // What a shadow may be measured from: scraps at the edges of things that move are of no surface.
 constexpr int kBridgeablePixels = 1500;
 
@@ -457,7 +460,10 @@ void ComponentOrders::decide(const Input& input, std::size_t index) noexcept {
     const bool roughly = rough_.of(rough) >= kRoughBridges && is_possible(rough) &&
                          rough_.of(rough) >= kRoughShare * rough_.total();
     const bool doubted = tracked && ((shadow && bridged != before) || (roughly && rough != before));
-    doubts_[index] = doubted && doubt_ < kDoubts ? static_cast<std::uint8_t>(doubt_ + 1) : 0;
+    const bool strongly = roughly && rough_.of(rough) >= kStrongBridges &&
+                          rough_.of(rough) >= kStrongShare * rough_.total();
+    const int enough = strongly ? kStrongDoubts : kDoubts;
+    doubts_[index] = doubted && doubt_ < enough ? static_cast<std::uint8_t>(doubt_ + 1) : 0;
     bool sure = false;
     const bool largest = index == 0 && !moving_;
     int order = largest ? home_.best() : newcomer();
