@@ -210,8 +210,8 @@ bool ColourPalette::teaches(std::size_t surface, int sx, int sy) const noexcept 
                                         static_cast<std::size_t>(cells_.width()) +
                                     static_cast<std::size_t>(sx * kSampleStepPx / kCellPx)];
     const ColourModel::Light seen = entries_[surface].inverse * fine_at(sx, sy);
-    const float off = possible(std::hypot(seen[1], seen[2]) / seen[0]) -
-                      sum.contrast[surface] / sum.alone;
+    const float off =
+        possible(std::hypot(seen[1], seen[2]) / seen[0]) - sum.contrast[surface] / sum.alone;
     return colour_cost_weights::kContrast * off * off < kSureCost;
 }
 

@@ -103,8 +103,8 @@ ComponentOrders::ComponentOrders(Size image, Axis axis, const Triangulation* geo
                     (image.height + kGrid_px - 1) / kGrid_px};
     // Values of a component span at most the projector, and so do orders, both ways.
     const int reach = 2 * static_cast<int>(std::ceil(coded_length_px / period_px)) + 4;
-    for (Votes* votes :
-         {&home_, &possible_, &before_, &sure_before_, &bridged_, &sure_bridged_, &behind_, &goes_on_, &rough_}) {
+    for (Votes* votes : {&home_, &possible_, &before_, &sure_before_, &bridged_, &sure_bridged_,
+                         &behind_, &goes_on_, &rough_}) {
         votes->create(reach);
     }
     const auto samples =
@@ -173,9 +173,14 @@ ComponentOrders::Line ComponentOrders::line_of(const Input& input, int number) c
         return along_x_ ? std::ptrdiff_t{1} : image.stride;
     };
     const ImageView<const float>& all = input.all_rad.empty() ? input.phase_rad : input.all_rad;
-    return {begin(all), begin(input.still_rad), begin(input.modulation),
-            step(all),  step(input.still_rad),  step(input.modulation),
-            number,     along_x_ ? size_.width : size_.height};
+    return {begin(all),
+            begin(input.still_rad),
+            begin(input.modulation),
+            step(all),
+            step(input.still_rad),
+            step(input.modulation),
+            number,
+            along_x_ ? size_.width : size_.height};
 }
 
 float ComponentOrders::edge(const Input& input, const Line& line, int border, int away,
@@ -308,7 +313,8 @@ void ComponentOrders::vote(const Input& input, const Sample& s) noexcept {
     }
 }
 
-// Turns that a pixel shows of what is so far away: of depths a share of the volume, of heights turns.
+// Turns that a pixel shows of what is so far away: of depths a share of the volume, of heights
+// turns.
 float ComponentOrders::turns_at(const Sample& s, float distance) const noexcept {
     if (!metric_) {
         return distance;
@@ -362,8 +368,7 @@ int ComponentOrders::newcomer() const noexcept {
         for (const Sample& s : samples_) {
             off += turns_at(s, *recent_) - s.value;
         }
-        const auto order =
-            static_cast<int>(std::lround(off / static_cast<float>(samples_.size())));
+        const auto order = static_cast<int>(std::lround(off / static_cast<float>(samples_.size())));
         if (is_possible(order)) {
             return order;
         }
@@ -406,17 +411,15 @@ void ComponentOrders::vote_bridges(const Input& input, std::uint16_t id) noexcep
         if (!stands && input.components[known].pixels < kBridgeablePixels) {
             continue;
         }
-        const int order =
-            (stands ? 0 : orders_[known]) + (forth ? bridge.orders : -bridge.orders);
+        const int order = (stands ? 0 : orders_[known]) + (forth ? bridge.orders : -bridge.orders);
         if (bridge.touch) {
             goes_on_.add(order, bridge.fits ? 1 : 0);
             touch_misses_ += bridge.fits ? 0 : 1;
             continue;
         }
         // Nothing is behind the background: that gap is no shadow.
-        const bool behind =
-            !in_front(order) ||
-            (!metric_ && input.front * (mean + order) < -static_cast<double>(kStandsOut));
+        const bool behind = !in_front(order) || (!metric_ && input.front * (mean + order) <
+                                                                 -static_cast<double>(kStandsOut));
         rough_.add(order, behind ? 0 : 1);
         if (!bridge.fits || behind) {
             bridge_misses_ += behind ? 0 : 1;
@@ -511,7 +514,7 @@ void ComponentOrders::choose(const Input& input) noexcept {
     ambiguous_.assign(input.components.size(), 1);
     standing_out_ = 0.0;
     front_ = metric_ ? (far_is_low_ ? 1.0 : -1.0) : input.front;
-    moving_ = !input.components.empty() && input.still_pixels > input.components[0].pixels;
+    moving_ = input.still_pixels > (input.components.empty() ? 0 : input.components[0].pixels);
     find_bridges(input);
     for (std::size_t i = 0; i < std::min(input.components.size(), kMostComponents); ++i) {
         doubt_ = 0;
@@ -526,8 +529,8 @@ void ComponentOrders::choose(const Input& input) noexcept {
         vote_bridges(input, input.components[i].id);
         decide(input, i);
         remember(input, i);
-        for (Votes* votes :
-             {&home_, &possible_, &before_, &sure_before_, &bridged_, &sure_bridged_, &behind_, &goes_on_, &rough_}) {
+        for (Votes* votes : {&home_, &possible_, &before_, &sure_before_, &bridged_, &sure_bridged_,
+                             &behind_, &goes_on_, &rough_}) {
             votes->clear();
         }
         for (const Sample& s : samples_) {

@@ -61,6 +61,8 @@ class ComponentOrders {
     [[nodiscard]] bool ambiguous(std::size_t index) const noexcept {
         return ambiguous_[index] != 0;
     }
+    /// Most of the image stands still: the components are what moves.
+    [[nodiscard]] bool something_moves() const noexcept { return moving_; }
     /// Of depths: farther away is less phase.
     [[nodiscard]] bool far_is_low() const noexcept { return far_is_low_; }
     /// How far and on how many places pixels stand out from 0, turns; negative: behind it.
@@ -157,11 +159,12 @@ class ComponentOrders {
     int doubt_ = 0;  ///< of the component at hand, a frame ago
     std::vector<Sample> samples_;
     std::vector<Bridge> bridges_;
-    Votes home_, possible_, before_, sure_before_, bridged_, sure_bridged_, behind_, goes_on_, rough_;
+    Votes home_, possible_, before_, sure_before_, bridged_, sure_bridged_, behind_, goes_on_,
+        rough_;
     int touch_misses_ = 0;
-    double front_ = 0.0;   ///< Input::front, of depths too
+    double front_ = 0.0;     ///< Input::front, of depths too
     int nearest_known_ = 0;  ///< of the component at hand: front_ times an order must reach it
-    bool moving_ = false;  ///< all components are of what moves; the rest stands still
+    bool moving_ = false;
     /// How far away the largest surface is that all is before; empty: heights are before 0, or
     /// nobody knows. And the largest thing that moved last.
     std::optional<float> backdrop_;

@@ -84,7 +84,10 @@ void StillScene::divide(ImageView<const float> phase_rad,
             still[x] = same ? still[x] : kNone;
             moving[x] = same ? kNone : row.phase_rad[x];
             count += same ? 1 : 0;
-            unknown += row.reference_px[x] == row.reference_px[x] || row.phase_rad[x] != row.phase_rad[x] ? 0 : 1;
+            unknown +=
+                row.reference_px[x] == row.reference_px[x] || row.phase_rad[x] != row.phase_rad[x]
+                    ? 0
+                    : 1;
         }
         still_pixels_ += count;
     }
@@ -177,7 +180,7 @@ void StillScene::learn_pixel(Rival& rival, int x, int y, float phase_rad, float 
     rival.modulation += kDrift * (modulation - rival.modulation);
     rival.seen_ms += elapsed_ms;
     const float before = front * (rival.phase_rad - known);
-    const float hold = before > kSame_rad    ? kBefore_ms
+    const float hold = before > kSame_rad     ? kBefore_ms
                        : before >= -kSame_rad ? kRelit_ms
                        : before < -kSame_rad  ? kBehind_ms
                                               : kNew_ms;
@@ -189,8 +192,8 @@ void StillScene::learn_pixel(Rival& rival, int x, int y, float phase_rad, float 
 }
 
 void StillScene::learn(ImageView<const float> unwrapped_rad,
-                       ImageView<const std::uint16_t> component,
-                       ImageView<const float> modulation, double front, Stamp stamp) noexcept {
+                       ImageView<const std::uint16_t> component, ImageView<const float> modulation,
+                       double front, Stamp stamp) noexcept {
     if (images_++ > kAtFirst && images_ % kEvery != 0) {
         return;
     }
