@@ -33,6 +33,7 @@ constexpr int kSlope_px = 4;
 constexpr float kBridgeFit = 0.12F;
 constexpr int kLeastBridges = 6;
 constexpr double kBridgeShare = 0.6;
+constexpr int kSureBridges = 12;  // of what moves: fewer are seen at what comes into the light
 // A border that motion blurs is off by more than that, but by less than half a fringe: then many
 // lines must agree.
 constexpr int kRoughBridges = 10;
@@ -485,7 +486,8 @@ void ComponentOrders::decide(const Input& input, std::size_t index) noexcept {
         sure = true;  // what most of the image is, is the background
     } else if (shadow && doubts_[index] == 0) {
         order = bridged;
-        sure = 2 * sure_bridged_.of(bridged) >= bridged_.of(bridged);
+        sure = 2 * sure_bridged_.of(bridged) >= bridged_.of(bridged) &&
+               (!moving_ || bridged_.of(bridged) >= kSureBridges);
     } else if (beside_largest(input, index) && is_possible(newcomer())) {
         // A finger that was cut off: a fringe is longer than a hand.
         order = newcomer();

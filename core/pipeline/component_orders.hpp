@@ -61,8 +61,6 @@ class ComponentOrders {
     [[nodiscard]] bool ambiguous(std::size_t index) const noexcept {
         return ambiguous_[index] != 0;
     }
-    /// Most of the image stands still: the components are what moves.
-    [[nodiscard]] bool something_moves() const noexcept { return moving_; }
     /// Of depths: farther away is less phase.
     [[nodiscard]] bool far_is_low() const noexcept { return far_is_low_; }
     /// How far and on how many places pixels stand out from 0, turns; negative: behind it.
@@ -164,7 +162,7 @@ class ComponentOrders {
     int touch_misses_ = 0;
     double front_ = 0.0;     ///< Input::front, of depths too
     int nearest_known_ = 0;  ///< of the component at hand: front_ times an order must reach it
-    bool moving_ = false;
+    bool moving_ = false;  ///< all components are of what moves; the rest stands still
     /// How far away the largest surface is that all is before; empty: heights are before 0, or
     /// nobody knows. And the largest thing that moved last.
     std::optional<float> backdrop_;

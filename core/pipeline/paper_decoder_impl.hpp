@@ -44,7 +44,6 @@ struct PaperDecoder::Impl {
     void fill_outlines() noexcept;
     void fill_outline(int x, int y) noexcept;
     void write_depth_row(int y) noexcept;
-    [[nodiscard]] const float* height_row(int y) noexcept;
     void mask_results() noexcept;
     void stamp_results() noexcept;
 

@@ -247,19 +247,6 @@ void PaperDecoder::Impl::fill_outlines() noexcept {
     }
 }
 
-// Heights of what moves. What stands still is the background, and all is while nothing is known.
-const float* PaperDecoder::Impl::height_row(int y) noexcept {
-    const float* from = unwrapped.row(y);
-    const std::uint16_t* ids = component.row(y);
-    float* height = row_coordinate.row(0);
-    const bool known = orders.something_moves();
-    for (int x = 0; x < size.width; ++x) {
-        const bool flat = !known || ids[x] == ComponentOrders::kStill;
-        height[x] = flat && !std::isnan(from[x]) ? 0.0F : from[x];
-    }
-    return height;
-}
-
 void PaperDecoder::Impl::write_depth_row(int y) noexcept {
     const float* row_unwrapped = unwrapped.row(y);
     DepthRow row;
@@ -274,7 +261,7 @@ void PaperDecoder::Impl::write_depth_row(int y) noexcept {
         geometry->undistort_projector_row(y, size.width, coordinate);
         row.coordinate_px = coordinate;
     } else {
-        row.coordinate_px = scene ? height_row(y) : row_unwrapped;
+        row.coordinate_px = row_unwrapped;
         row.a0 = 1.0F;
         row.b = static_cast<float>(-kBackground_mm);
         row.d = static_cast<float>(-front * kMmPerProjectorPx * px_per_rad);

@@ -44,8 +44,7 @@ struct PaperSettings {
     /// Whether points() is made.
     bool points = true;
     /// Off: every image is unwrapped for itself, as in the paper. Else what has not moved keeps its
-    /// place, and only the rest is looked at anew; relative depth is then of what moves, and all
-    /// else is background. Only create() looks at it.
+    /// place, and only the rest is looked at anew. Only create() looks at it.
     MotionHandling motion = MotionHandling::off;
 };
 
