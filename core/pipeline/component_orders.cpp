@@ -3,14 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace xtrack {
 namespace {
 
-constexpr auto kPerTurn = static_cast<float>(0.5 / std::numbers::pi);
-// Pixels are asked on a grid, of large components on every second or fourth line and column of it.
-constexpr int kGrid_px = 4;
+// Pixels are asked on the grid, of large components on every second or fourth line and column of
+// it.
 constexpr int kLargePixels = 15000;
 constexpr int kHugePixels = 60000;
 // The ends of the volume are this sharp: three sigma of the phase at weak modulation, turns.
@@ -21,16 +19,6 @@ constexpr double kPossibleShare = 0.9;
 constexpr double kBeforeShare = 0.25;
 // Less is the background itself, turns.
 constexpr float kStandsOut = 0.1F;
-// Shadows: their width, how far from their border the phase is not mixed, and how far from there
-// its slope is measured, px.
-constexpr int kLeastShadow_px = 2;
-constexpr int kShadowsOfImage = 3;  // a third of the image at most
-constexpr int kClear_px = 2;
-constexpr int kMostClear_px = 5;
-constexpr int kSlope_px = 4;
-// The fringe goes on across a shadow if it is off by no more, turns; a gap that is no shadow fits
-// by chance in a quarter of its lines.
-constexpr float kBridgeFit = 0.12F;
 constexpr int kLeastBridges = 6;
 constexpr double kBridgeShare = 0.6;
 constexpr int kSureBridges = 12;  // of what moves: fewer are seen at what comes into the light
@@ -40,10 +28,7 @@ constexpr int kRoughBridges = 10;
 constexpr double kRoughShare = 0.8;
 constexpr int kStrongBridges = 12;
 constexpr double kStrongShare = 0.9;
-constexpr std::size_t kMostBridges = 8192;
-// A surface goes on where it touches another without a shadow if its fringe does, and its light is
-// the same but for this factor; in so much of the contact.
-constexpr float kAlike = 1.2F;
+// A surface goes on where so much of the contact says it.
 constexpr double kGoesOnShare = 0.7;
 // What moves smears its shadow's border: so many images on end must say that a component lies
 // elsewhere than it did.
@@ -156,113 +141,6 @@ float ComponentOrders::value_at(const Input& input, int x, int y,
     const PhasePlace place = input.unwrapper.place(x, y);
     id = place.component;
     return kPerTurn * input.phase_rad.at(x, y) + static_cast<float>(place.turns);
-}
-
-bool ComponentOrders::Line::stands(int i) const noexcept {
-    return still_rad != nullptr && std::isfinite(still_rad[i * next_still]);
-}
-
-bool ComponentOrders::Line::seen(int i) const noexcept {
-    return std::isfinite(phase_rad[i * next]);
-}
-
-ComponentOrders::Line ComponentOrders::line_of(const Input& input, int number) const noexcept {
-    const auto begin = [&](const ImageView<const float>& image) {
-        return image.empty() ? nullptr : along_x_ ? image.row(number) : image.data + number;
-    };
-    const auto step = [&](const ImageView<const float>& image) {
-        return along_x_ ? std::ptrdiff_t{1} : image.stride;
-    };
-    const ImageView<const float>& all = input.all_rad.empty() ? input.phase_rad : input.all_rad;
-    return {begin(all),
-            begin(input.still_rad),
-            begin(input.modulation),
-            step(all),
-            step(input.still_rad),
-            step(input.modulation),
-            number,
-            along_x_ ? size_.width : size_.height};
-}
-
-float ComponentOrders::edge(const Input& input, const Line& line, int border, int away,
-                            std::uint16_t& id) const noexcept {
-    const auto raw_at = [&](int i, std::uint16_t& of) {
-        const int x = along_x_ ? i : line.number;
-        const int y = along_x_ ? line.number : i;
-        const float taken_off =
-            input.reference_rad.empty() ? 0.0F : kPerTurn * input.reference_rad.at(x, y);
-        if (line.stands(i)) {
-            of = kStill;
-            return kPerTurn * line.still_rad[i * line.next_still] + taken_off;
-        }
-        return value_at(input, x, y, of) + taken_off;
-    };
-    // Some pixels of the border may have been taken out.
-    int clear_px = kClear_px;
-    float clear = raw_at(border + away * clear_px, id);
-    while (id == 0 && clear_px < kMostClear_px) {
-        ++clear_px;
-        clear = raw_at(border + away * clear_px, id);
-    }
-    std::uint16_t beyond = 0;
-    const float far = raw_at(border + away * (clear_px + kSlope_px), beyond);
-    id = id == beyond ? id : std::uint16_t{0};
-    return clear + static_cast<float>(clear_px) / kSlope_px * (clear - far);
-}
-
-// Where a projector's shadow lies between two surfaces, the ray that grazes one of them arrives at
-// the other: the projector's phase goes on across it, turns and all. Where there is no shadow it
-// goes on within one surface alone, and so does the light.
-void ComponentOrders::add_bridge(const Input& input, const Line& line, int from, int to) noexcept {
-    Bridge bridge;
-    bridge.touch = to == from + 1;
-    const float left = edge(input, line, from, -1, bridge.from);
-    const float right = edge(input, line, to, 1, bridge.to);
-    if (bridge.from == bridge.to || bridge.from == 0 || bridge.to == 0 ||
-        !std::isfinite(left - right)) {
-        return;
-    }
-    const float orders = std::nearbyint(left - right);
-    bridge.orders = static_cast<std::int32_t>(orders);
-    bridge.fits = std::fabs(left - right - orders) <= kBridgeFit;
-    if (bridge.touch) {
-        const float a = line.modulation[(from - kClear_px) * line.next_modulation];
-        const float b = line.modulation[(to + kClear_px) * line.next_modulation];
-        bridge.fits = bridge.fits && a < kAlike * b && b < kAlike * a;
-    }
-    bridges_.push_back(bridge);
-}
-
-void ComponentOrders::bridge_line(const Input& input, int number) noexcept {
-    const Line line = line_of(input, number);
-    constexpr int kMargin = kMostClear_px + kSlope_px;
-    int last_seen = -1;
-    for (int i = 0; i < line.length; ++i) {
-        if (!line.seen(i)) {
-            continue;
-        }
-        const int gap = i - last_seen - 1;
-        const int from = last_seen;
-        last_seen = i;
-        const bool touch = gap == 0 && line.modulation != nullptr && from >= 0 &&
-                           line.stands(from) != line.stands(i);  // or an outline, which is of none
-        if (!(touch || (gap >= kLeastShadow_px && gap <= line.length / kShadowsOfImage)) ||
-            from < kMargin || i + kMargin >= line.length || bridges_.size() >= kMostBridges) {
-            continue;
-        }
-        add_bridge(input, line, from, i);
-    }
-}
-
-void ComponentOrders::find_bridges(const Input& input) noexcept {
-    bridges_.clear();
-    if (input.components.size() + (input.still_pixels > 0 ? 1 : 0) < 2) {
-        return;
-    }
-    const int lines = along_x_ ? size_.height : size_.width;
-    for (int line = kGrid_px / 2; line < lines; line += kGrid_px) {
-        bridge_line(input, line);
-    }
 }
 
 void ComponentOrders::sample(const Input& input, const PhaseComponent& component) noexcept {

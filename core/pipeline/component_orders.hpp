@@ -67,6 +67,10 @@ class ComponentOrders {
     [[nodiscard]] double standing_out() const noexcept { return standing_out_; }
 
  private:
+    static constexpr float kPerTurn = 0.15915494F;     ///< turns of a radian
+    static constexpr int kGrid_px = 4;                 ///< on which pixels are asked
+    static constexpr std::size_t kMostBridges = 8192;  ///< of an image; more are not looked at
+
     /// Votes for orders, kept clean between uses.
     class Votes {
      public:
@@ -162,7 +166,7 @@ class ComponentOrders {
     int touch_misses_ = 0;
     double front_ = 0.0;     ///< Input::front, of depths too
     int nearest_known_ = 0;  ///< of the component at hand: front_ times an order must reach it
-    bool moving_ = false;  ///< all components are of what moves; the rest stands still
+    bool moving_ = false;    ///< all components are of what moves; the rest stands still
     /// How far away the largest surface is that all is before; empty: heights are before 0, or
     /// nobody knows. And the largest thing that moved last.
     std::optional<float> backdrop_;
