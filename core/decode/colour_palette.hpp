@@ -100,7 +100,8 @@ class ColourPalette {
  private:
     static constexpr std::uint8_t kMoved = 128;
     static constexpr int kFirstFrames = 9;
-    static constexpr int kVoteCells = 40;  // along each axis of E
+    static constexpr std::size_t kGiven = 2;  // surfaces that are always there: grey and skin
+    static constexpr int kVoteCells = 40;     // along each axis of E
     struct Entry {
         ColourSurface surface;
         std::array<float, 2> given{};  ///< its log_gain at first, where it may not leave it far
