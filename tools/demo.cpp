@@ -32,6 +32,7 @@ constexpr const char* kPresets[] = {"ideal-60", "webcam-30"};
 
 struct DemoOptions {
     std::string out = "demo-out";
+    std::string method;
     int seeds = 0;
     bool fast = false;
     bool json = false;
@@ -46,6 +47,7 @@ struct Scored {
 Result<TrialResult> play(const std::string& preset, const DemoOptions& demo) {
     TrialOptions options;
     options.preset = preset;
+    options.method = demo.method;
     options.pace = demo.fast ? Pace::replay : Pace::own_pace;
     std::optional<ContactSheet> sheet;
     std::vector<GestureEvent> fresh;  // events whose pictures are still to be taken
@@ -185,6 +187,7 @@ Result<std::vector<Scored>> score_seeds(const DemoOptions& demo) {
             while (started < seeds && running.size() < at_once) {
                 TrialOptions options;
                 options.preset = preset;
+                options.method = demo.method;
                 options.seed = ++started;
                 options.measure_depth = true;
                 running.push_back(
@@ -235,6 +238,8 @@ void add_demo(CLI::App& app, int& exit_status) {
     const auto demo = std::make_shared<DemoOptions>();
     command->add_option("--out", demo->out, "Folder for pictures and events.jsonl")
         ->default_str("demo-out");
+    command->add_option("--method", demo->method,
+                        "What the projector shows; auto or a name from `xtrack methods`");
     command->add_flag("--fast", demo->fast, "As fast as it goes instead of in real time");
     command
         ->add_option("--seeds", demo->seeds,

@@ -79,7 +79,12 @@ Result<ShownMethod> show_method(const std::string& name, const GestureSettings& 
                          "--method " + name + ": not a method; choose from " + known_methods()};
         }
         needs.metric = demands_of(gestures).metric;
+        const bool wants_colour = info(*method).colour && !settings.camera.colour;
+        if (wants_colour) {
+            needs.colour = settings.camera.colour = settings.camera.chroma_422 = true;
+        }
         verdict = judge(*method, needs);
+        verdict.reason += wants_colour ? "; the simulated camera sees colour for it" : "";
         if (!verdict.possible) {
             return Error{ErrorCode::unsupported,
                          "--method " + name + ": " + verdict.reason +

@@ -29,7 +29,8 @@ struct ShownMethod {
     std::string colours;  ///< what the colour self-test said; empty: none was made
 };
 
-/// Makes a simulated projector show a method's patterns.
+/// Makes a simulated projector show a method's patterns. A method that is asked for by its name is
+/// given a camera that sees colour where it needs one.
 /// @param name a method's, or `auto`, which tests a colour camera first
 /// @return why it was chosen; invalid_argument for a name that is none; unsupported where the
 ///         method cannot carry the gestures on this camera

@@ -52,9 +52,6 @@ Result<Session> open(const RunOptions& run, SessionOptions options) {
         if (!shown->colours.empty()) {
             fmt::print(stderr, "colour self-test: {}\n", shown->colours);
         }
-        if (!info(shown->verdict.method).metric) {
-            options.method = DecodeMethod::paper;
-        }
         fmt::print(stderr, "method {}: {}\n", info(shown->verdict.method).name,
                    shown->verdict.reason);
     }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "tools/hand_accuracy.hpp"
+#include "tools/method_choice.hpp"
 
 namespace xtrack::tools {
 
@@ -127,6 +128,11 @@ Result<TrialResult> run_trial(const TrialOptions& options, const TrialSetup& set
     }
     if (options.seed != 0) {
         settings->vary(options.seed);
+    }
+    if (!options.method.empty()) {
+        if (auto shown = show_method(options.method, GestureSettings{}, *settings); !shown) {
+            return shown.error();
+        }
     }
     auto rig = SimulatedRig::create(*settings);
     if (!rig) {

@@ -16,6 +16,7 @@ namespace xtrack::tools {
 struct TrialOptions {
     std::string preset = "ideal-60";
     std::uint64_t seed = 0;  ///< 0: the preset's own person; else another for every number
+    std::string method;      ///< of show_method(); empty: the preset's own patterns
     Pace pace = Pace::replay;
     /// Compare depth and palm with the truth now and then. Only in replay: truth is rendered by the
     /// source, which is read in another thread otherwise.

@@ -46,6 +46,9 @@ void colour_cost_scalar(const ColourCost& row) noexcept {
         apart = std::isnan(reference_px) ? 0.0F : apart;
         const float between = fine_contrast - contrast;
         const float cost = kApart * apart * apart + kContrast * between * between;
+        if (row.fine_contrast != nullptr) {
+            row.fine_contrast[i] = fine_contrast;
+        }
         row.cost[i] = possible ? std::min(cost, kMostColourCost) : kMostColourCost;
     }
 }

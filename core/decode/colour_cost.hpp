@@ -34,7 +34,8 @@ struct ColourCost {
     bool has_coarse = false;  ///< else the surface's contrast stands for the coarse one's
     ColourSamples samples;
     int count = 0;
-    float* cost = nullptr;  ///< out: 0 ... kMostColourCost
+    float* cost = nullptr;           ///< out: 0 ... kMostColourCost
+    float* fine_contrast = nullptr;  ///< out, if wanted: as seen; anything where no light is
 };
 
 /// That of a pixel that the surface does not explain at all.

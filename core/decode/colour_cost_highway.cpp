@@ -85,6 +85,9 @@ void measure(const ColourCost& row) {
         V apart = hn::Div(hn::Sub(fine_px, reference), fine_period);
         apart = hn::Sub(apart, nearest_whole(apart));
         apart = hn::IfThenElseZero(hn::Eq(reference, reference), apart);
+        if (row.fine_contrast != nullptr) {
+            hn::StoreU(fine_contrast, d, row.fine_contrast + at);
+        }
         const V between = hn::Sub(fine_contrast, contrast);
         const V apart_cost =
             hn::Mul(hn::Set(d, colour_cost_weights::kApart), hn::Mul(apart, apart));

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/decode/arctangent.hpp"
+#include "core/decode/colour_cost_weights.hpp"
 
 namespace xtrack {
 namespace {
@@ -15,6 +16,8 @@ constexpr float kTurn = 2.0F * std::numbers::pi_v<float>;
 // Skin of any tone reflects about twice as much red as blue (haemoglobin, melanin).
 constexpr std::array<float, 3> kSkin{1.4F, 0.95F, 0.75F};
 constexpr float kSkinContrast = 0.7F;
+// Grey, and as many tints around it, of which skin is one, that all neighbours are as far apart.
+constexpr std::size_t kTints = 7;
 
 // What is at another place in the coarse image must agree there by so much better.
 constexpr float kMovesShare = 0.8F;
@@ -31,6 +34,15 @@ constexpr float kSureCost = 0.15F;   // pixels of more do not teach
 constexpr float kPairWeight = 0.3F;  // of what two periods say, against what the contrast says
 constexpr float kFade = 0.5F;        // of what a fit knows, from frame to frame
 
+// What a contrast that is not the usual one counts beside one that changes with the phase.
+constexpr float kUnusualContrast = 0.05F;
+constexpr float kMostLoneContrast = 2.0F;  // of a sample; more says no more
+// How far a given surface may become another, over E: a third of the way to its neighbours.
+constexpr float kLeash = 0.06F;
+// What a surface that is seen e times less than another must explain better: a cell is smaller than
+// a fringe, and a little of a fringe is explained by much.
+constexpr float kRare = 0.4F;
+
 // Within one period.
 float coordinate_px(const ColourModel::Light& seen, const ColourPeriod& period) noexcept {
     return (arctangent2(seen[2], seen[1]) - static_cast<float>(period.phase_rad)) / kTurn *
@@ -41,6 +53,17 @@ float coordinate_px(const ColourModel::Light& seen, const ColourPeriod& period) 
 float shares_apart(float a_px, float b_px, const ColourPeriod& period) noexcept {
     const float apart = (a_px - b_px) / static_cast<float>(period.period_px);
     return apart - std::floor(apart + 0.5F);
+}
+
+float possible(float contrast) noexcept {
+    return contrast >= 0.0F && contrast < kMostLoneContrast ? contrast : kMostLoneContrast;
+}
+
+void keep_near(const std::array<float, 2>& given, std::array<float, 2>& log_gain) noexcept {
+    const float re = log_gain[0] - given[0];
+    const float im = log_gain[1] - given[1];
+    const float share = kLeash / std::max(std::hypot(re, im), kLeash);
+    log_gain = {given[0] + share * re, given[1] + share * im};
 }
 
 }  // namespace
@@ -67,6 +90,7 @@ ColourPalette::ColourPalette(Size image, const ColourModel& model, const ColourP
         plane.resize(samples_.width, samples_.height);
     }
     moved_costs_.resize(samples_.width, cells_.height());
+    contrasts_.resize(samples_.width, cells_.height());
     for (Image<float>& cost : costs_) {
         cost.resize(samples_.width, samples_.height);
     }
@@ -88,9 +112,22 @@ void ColourPalette::clear() noexcept {
         entry.fit.clear();
         entry.cells = 0;
     }
+    const ColourSurface skin = model_.surface(kSkin, kSkinContrast);
     set(0, ColourSurface{});
-    set(1, model_.surface(kSkin, kSkinContrast));
+    set(1, skin);
     used_ = kGiven;
+    for (; !coarse_ && used_ < kTints; ++used_) {
+        ColourSurface tint = skin;
+        const float turn = kTurn * static_cast<float>(used_ - 1) / (kTints - 1);
+        const float c = std::cos(turn);
+        const float s = std::sin(turn);
+        tint.log_gain = {c * skin.log_gain[0] - s * skin.log_gain[1],
+                         s * skin.log_gain[0] + c * skin.log_gain[1]};
+        set(used_, tint);
+    }
+    for (Entry& entry : entries_) {
+        entry.given = entry.surface.log_gain;
+    }
     cells_.fill(0);
     surfaces_.fill(0);
     votes_.fill(0.0F);
@@ -133,8 +170,41 @@ ColourModel::Light ColourPalette::coarse_at(int sx, int sy) const noexcept {
     return {planes_[3].at(sx, sy), planes_[4].at(sx, sy), planes_[5].at(sx, sy)};
 }
 
+// True where a contrast is all that a sample shows.
+bool ColourPalette::is_alone(int sx, int sy) const noexcept {
+    return !coarse_ && std::isnan(planes_[6].at(sx, sy));
+}
+
+// The cost of contrasts that differ from their mean, and of a mean that is not the surface's.
+void ColourPalette::judge_contrasts(Evidence& sum) const noexcept {
+    if (sum.alone <= 0.0F) {
+        return;
+    }
+    for (std::size_t k = 0; k < used_; ++k) {
+        const float mean = sum.contrast[k] / sum.alone;
+        const float unusual = mean - entries_[k].surface.contrast;
+        const float differ = std::max(sum.square[k] - sum.alone * mean * mean, 0.0F);
+        sum.cost[k] += colour_cost_weights::kContrast *
+                           (differ + kUnusualContrast * sum.alone * unusual * unusual) -
+                       kRare * entries_[k].commonness;
+    }
+}
+
+bool ColourPalette::teaches(std::size_t surface, int sx, int sy) const noexcept {
+    if (!is_alone(sx, sy)) {
+        return costs_[surface].at(sx, sy) < kSureCost;
+    }
+    const Evidence& sum = smoothed_[static_cast<std::size_t>(sy * kSampleStepPx / kCellPx) *
+                                        static_cast<std::size_t>(cells_.width()) +
+                                    static_cast<std::size_t>(sx * kSampleStepPx / kCellPx)];
+    const ColourModel::Light seen = entries_[surface].inverse * fine_at(sx, sy);
+    const float off =
+        possible(std::hypot(seen[1], seen[2]) / seen[0]) - sum.contrast[surface] / sum.alone;
+    return colour_cost_weights::kContrast * off * off < kSureCost;
+}
+
 void ColourPalette::measure(const Entry& entry, const ColourSamples& samples, float moved_px,
-                            int count, float* cost) const noexcept {
+                            int count, float* cost, float* fine_contrast) const noexcept {
     ColourCost row;
     row.inverse = entry.inverse;
     row.contrast = entry.surface.contrast;
@@ -146,6 +216,7 @@ void ColourPalette::measure(const Entry& entry, const ColourSamples& samples, fl
     row.samples = samples;
     row.count = count;
     row.cost = cost;
+    row.fine_contrast = fine_contrast;
     colour_cost(row);
 }
 
@@ -155,6 +226,7 @@ void ColourPalette::add_row(int y) noexcept {
     Evidence* cells = evidence_.data() + static_cast<std::size_t>(y / kCellPx) *
                                              static_cast<std::size_t>(cells_.width());
     float* moved_costs = moved_costs_.row(y / kCellPx);
+    float* contrasts = contrasts_.row(y / kCellPx);
     ColourSamples moved = samples;
     for (std::size_t c = 0; c < 3; ++c) {
         moved.coarse[c] = planes_[7 + c].row(sy);
@@ -165,37 +237,57 @@ void ColourPalette::add_row(int y) noexcept {
         return samples.fine[0][i] + samples.fine[1][i] + samples.fine[2][i] >= kLeastLight;
     };
     for (int i = 0; i < samples_.width; ++i) {
-        cells[i * kSampleStepPx / kCellPx].pixels += lit(i) ? 1.0F : 0.0F;
+        Evidence& cell = cells[i * kSampleStepPx / kCellPx];
+        cell.pixels += lit(i) ? 1.0F : 0.0F;
+        cell.alone += lit(i) && is_alone(i, sy) ? 1.0F : 0.0F;
+        cell.light += lit(i) ? samples.fine[0][i] + samples.fine[1][i] + samples.fine[2][i] : 0.0F;
     }
     for (std::size_t k = 0; k < used_; ++k) {
         float* costs = costs_[k].row(sy);
-        measure(entries_[k], samples, 0.0F, samples_.width, costs);
+        measure(entries_[k], samples, 0.0F, samples_.width, costs, contrasts);
         if (moves) {
             measure(entries_[k], moved, moved_px_, samples_.width, moved_costs);
         }
         for (int i = 0; i < samples_.width; ++i) {
-            if (lit(i)) {
-                Evidence& cell = cells[i * kSampleStepPx / kCellPx];
-                cell.cost[k] += costs[i];
-                cell.moved[k] += moves ? moved_costs[i] : kMostColourCost;
+            if (!lit(i)) {
+                continue;
             }
+            Evidence& cell = cells[i * kSampleStepPx / kCellPx];
+            if (is_alone(i, sy)) {
+                const float contrast = possible(contrasts[i]);
+                cell.contrast[k] += contrast;
+                cell.square[k] += contrast * contrast;
+                continue;
+            }
+            cell.cost[k] += costs[i];
+            cell.moved[k] += moves ? moved_costs[i] : kMostColourCost;
         }
     }
 }
 
-ColourPalette::Evidence ColourPalette::sum_evidence(int cell_x, int cell_y, int reach_x,
-                                                    int reach_y) const noexcept {
+// What the cells at and around (x, y) say together, those a step away for half.
+ColourPalette::Evidence ColourPalette::around(const std::vector<Evidence>& cells, int x, int y,
+                                              int step_x, int step_y) const noexcept {
+    const Evidence& here = cells[index_of(x, y)];
     Evidence sum;
-    for (int y = std::max(0, cell_y - reach_y);
-         y <= std::min(cells_.height() - 1, cell_y + reach_y); ++y) {
-        for (int x = std::max(0, cell_x - reach_x);
-             x <= std::min(cells_.width() - 1, cell_x + reach_x); ++x) {
-            const Evidence& of = evidence_[index_of(x, y)];
-            const float weight = (x == cell_x ? 2.0F : 1.0F) * (y == cell_y ? 2.0F : 1.0F);
-            sum.pixels += weight * of.pixels;
+    for (int j = y - step_y; j <= y + step_y; j += std::max(step_y, 1)) {
+        for (int i = x - step_x; i <= x + step_x; i += std::max(step_x, 1)) {
+            if (j < 0 || j >= cells_.height() || i < 0 || i >= cells_.width()) {
+                continue;
+            }
+            const Evidence& there = cells[index_of(i, j)];
+            if (!coarse_ && !alike(here, there)) {
+                continue;
+            }
+            const float weight = (i == x ? 2.0F : 1.0F) * (j == y ? 2.0F : 1.0F);
+            sum.pixels += weight * there.pixels;
+            sum.light += weight * there.light;
+            sum.alone += weight * there.alone;
             for (std::size_t k = 0; k < used_; ++k) {
-                sum.cost[k] += weight * of.cost[k];
-                sum.moved[k] += weight * of.moved[k];
+                sum.cost[k] += weight * there.cost[k];
+                sum.moved[k] += weight * there.moved[k];
+                sum.contrast[k] += weight * there.contrast[k];
+                sum.square[k] += weight * there.square[k];
             }
         }
     }
@@ -204,39 +296,59 @@ ColourPalette::Evidence ColourPalette::sum_evidence(int cell_x, int cell_y, int 
 
 // Of the cell and those around it, or along a finger, which can be as narrow as a cell, and what is
 // beside it would outvote it.
-ColourPalette::Evidence ColourPalette::evidence_around(int cell_x, int cell_y) const noexcept {
+ColourPalette::Evidence ColourPalette::around_or_along(int x, int y) const noexcept {
     const auto least = [&](const Evidence& of) {
         const auto end = of.cost.begin() + static_cast<std::ptrdiff_t>(used_);
         return of.pixels > 0.0F ? *std::min_element(of.cost.begin(), end) / of.pixels
                                 : kMostColourCost;
     };
-    Evidence sum = sum_evidence(cell_x, cell_y, 1, 1);
+    Evidence sum = around(evidence_, x, y, 1, 1);
     if (least(sum) < kMixed) {
         return sum;
     }
-    for (const Evidence& narrow :
-         {sum_evidence(cell_x, cell_y, 0, 1), sum_evidence(cell_x, cell_y, 1, 0)}) {
+    for (const Evidence& narrow : {around(evidence_, x, y, 0, 1), around(evidence_, x, y, 1, 0)}) {
         sum = least(narrow) < kNarrowShare * least(sum) ? narrow : sum;
     }
     return sum;
 }
 
+// A contrast says something over a whole fringe, which is wider than a few cells: without another
+// period cells that are as bright are taken together from farther away.
+void ColourPalette::gather() noexcept {
+    const auto pass = [&](std::vector<Evidence>& to, const auto& of) {
+        for (int y = 0; y < cells_.height(); ++y) {
+            for (int x = 0; x < cells_.width(); ++x) {
+                to[index_of(x, y)] = of(x, y);
+            }
+        }
+    };
+    if (coarse_) {
+        pass(smoothed_, [&](int x, int y) { return around_or_along(x, y); });
+        return;
+    }
+    pass(smoothed_, [&](int x, int y) { return around(evidence_, x, y, 1, 1); });
+    constexpr int kFar = 3;  // cells; three that were taken together lie side by side
+    pass(evidence_, [&](int x, int y) { return around(smoothed_, x, y, kFar, kFar); });
+    smoothed_.swap(evidence_);
+}
+
 void ColourPalette::choose() noexcept {
-    const int width = cells_.width();
-    const int height = cells_.height();
     for (Entry& entry : entries_) {
+        entry.commonness = std::log1p(static_cast<float>(entry.cells));
         entry.cells = 0;
     }
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            const Evidence& sum = smoothed_[index_of(x, y)] = evidence_around(x, y);
+    gather();
+    for (int y = 0; y < cells_.height(); ++y) {
+        for (int x = 0; x < cells_.width(); ++x) {
+            Evidence& sum = smoothed_[index_of(x, y)];
+            judge_contrasts(sum);
             std::size_t best = 0;
             std::size_t moved = 0;
             for (std::size_t k = 1; k < used_; ++k) {
                 best = sum.cost[k] < sum.cost[best] ? k : best;
                 moved = sum.moved[k] < sum.moved[moved] ? k : moved;
             }
-            const bool moves = sum.moved[moved] < kMovesShare * sum.cost[best];
+            const bool moves = coarse_ && sum.moved[moved] < kMovesShare * sum.cost[best];
             best = moves ? moved : best;
             const auto value = static_cast<std::uint8_t>(best + (moves ? kMoved : 0U));
             cells_.at(x, y) = value;
@@ -314,8 +426,7 @@ void ColourPalette::refine() noexcept {
                 cells_.at(sx * kSampleStepPx / kCellPx, sy * kSampleStepPx / kCellPx);
             const std::size_t surface = surface_of(value);
             // What moved agrees only about; it can wait until it rests.
-            if (is_moved(value) || light.sum() < kLeastLight ||
-                !(costs_[surface].at(sx, sy) < kSureCost)) {
+            if (is_moved(value) || light.sum() < kLeastLight || !teaches(surface, sx, sy)) {
                 continue;
             }
             Entry& entry = entries_[surface];
@@ -335,7 +446,12 @@ void ColourPalette::refine() noexcept {
     for (std::size_t k = 0; k < used_; ++k) {
         // Half a step: which cells are a surface's changes with what is believed of it.
         Entry& entry = entries_[k];
-        set(k, entry.fit.solve(entry.surface, kBelievedPixels + kDamping * entry.fit.pixels()));
+        ColourSurface found =
+            entry.fit.solve(entry.surface, kBelievedPixels + kDamping * entry.fit.pixels());
+        if (!coarse_) {
+            keep_near(entry.given, found.log_gain);
+        }
+        set(k, found);
     }
 }
 

@@ -20,8 +20,12 @@ namespace xtrack {
 /// A few surfaces are enough: skin, clothes, a wall. Each cell of 8 x 8 pixels is of the surface
 /// under which its periods agree best on a coordinate, and on a contrast. What a surface does is
 /// refined from the cells that chose it (ColourFit). New surfaces come from single pixels that
-/// ColourSearch explains: many that agree on their gains are one; without a coarse colour period
-/// there is no such search, and grey and skin must do.
+/// ColourSearch explains: many that agree on their gains are one.
+///
+/// Without a coarse colour period there is no such search: grey, skin and other tints about as
+/// strong are given, each of which may become what it is like only so far that it does not become
+/// its neighbour. Where nothing orders the period either, a cell is of the surface under which its
+/// contrast is the same at every phase; whatever it is, as it depends on the light of the room.
 ///
 /// Where something moves the coarse image, which is older, shows it at another place: its light
 /// there is a second chance of a sample to agree with itself.
@@ -97,35 +101,53 @@ class ColourPalette {
 
  private:
     static constexpr std::uint8_t kMoved = 128;
-    static constexpr std::size_t kGiven = 2;  // surfaces that are always there: grey and skin
     static constexpr int kFirstFrames = 9;
-    static constexpr int kVoteCells = 40;  // along each axis of E
+    static constexpr std::size_t kGiven = 2;  // surfaces that are always there: grey and skin
+    static constexpr int kVoteCells = 40;     // along each axis of E
     struct Entry {
         ColourSurface surface;
+        std::array<float, 2> given{};  ///< its log_gain at first, where it may not leave it far
         ColourModel::Inverse inverse = ColourModel::Inverse::Identity();
         ColourModel::Taps taps{};
         ColourFit fit;
-        int cells = 0;  // that chose it lately
+        int cells = 0;            // that chose it lately
+        float commonness = 0.0F;  // the logarithm of that, of the image before
     };
     struct Evidence {
         float pixels = 0.0F;
+        float light = 0.0F;
         std::array<float, kMostSurfaces> cost{};
         std::array<float, kMostSurfaces> moved{};
+        // Of samples that have nothing but their contrast to go by.
+        float alone = 0.0F;
+        std::array<float, kMostSurfaces> contrast{};
+        std::array<float, kMostSurfaces> square{};
     };
 
     void set(std::size_t entry, const ColourSurface& surface) noexcept;
     void measure(const Entry& entry, const ColourSamples& samples, float moved_px, int count,
-                 float* cost) const noexcept;
+                 float* cost, float* fine_contrast = nullptr) const noexcept;
     [[nodiscard]] ColourSamples row_samples(int row) const noexcept;
     [[nodiscard]] ColourModel::Light fine_at(int sx, int sy) const noexcept;
     [[nodiscard]] ColourModel::Light coarse_at(int sx, int sy) const noexcept;
+    [[nodiscard]] bool is_alone(int sx, int sy) const noexcept;
+    /// As bright: of one surface, as far as that goes.
+    [[nodiscard]] static bool alike(const Evidence& a, const Evidence& b) noexcept {
+        constexpr float kAlike = 1.4F;
+        const float x = a.light * b.pixels;
+        const float y = b.light * a.pixels;
+        return x < kAlike * y && y < kAlike * x;
+    }
     [[nodiscard]] std::size_t index_of(int cell_x, int cell_y) const noexcept {
         return static_cast<std::size_t>(cell_y) * static_cast<std::size_t>(cells_.width()) +
                static_cast<std::size_t>(cell_x);
     }
-    [[nodiscard]] Evidence sum_evidence(int cell_x, int cell_y, int reach_x,
-                                        int reach_y) const noexcept;
-    [[nodiscard]] Evidence evidence_around(int cell_x, int cell_y) const noexcept;
+    [[nodiscard]] Evidence around(const std::vector<Evidence>& cells, int x, int y, int step_x,
+                                  int step_y) const noexcept;
+    [[nodiscard]] Evidence around_or_along(int x, int y) const noexcept;
+    void gather() noexcept;
+    void judge_contrasts(Evidence& sum) const noexcept;
+    [[nodiscard]] bool teaches(std::size_t surface, int sx, int sy) const noexcept;
     void refine() noexcept;
     void search() noexcept;
     void vote(const ColourHypothesis& hypothesis, float weight) noexcept;
@@ -144,7 +166,8 @@ class ColourPalette {
     // Of all samples: fine and coarse light, the reference, coarse light of what moves.
     std::array<Image<float>, 10> planes_;
     float moved_px_ = 0.0F;
-    Image<float> moved_costs_;                       // of a row of samples in each row of cells
+    // Of a row of samples, in each row of cells.
+    Image<float> moved_costs_, contrasts_;
     std::array<Image<float>, kMostSurfaces> costs_;  // of each surface in each sample
     Image<std::uint8_t> cells_;                      // surface, and kMoved
     Image<std::uint8_t> surfaces_;

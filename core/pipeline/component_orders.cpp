@@ -3,14 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace xtrack {
 namespace {
 
-constexpr auto kPerTurn = static_cast<float>(0.5 / std::numbers::pi);
-// Pixels are asked on a grid, of large components on every second or fourth line and column of it.
-constexpr int kGrid_px = 4;
+// Pixels are asked on the grid, of large components on every second or fourth line and column of
+// it.
 constexpr int kLargePixels = 15000;
 constexpr int kHugePixels = 60000;
 // The ends of the volume are this sharp: three sigma of the phase at weak modulation, turns.
@@ -21,21 +19,21 @@ constexpr double kPossibleShare = 0.9;
 constexpr double kBeforeShare = 0.25;
 // Less is the background itself, turns.
 constexpr float kStandsOut = 0.1F;
-// Shadows: their width, how far from their border the phase is not mixed, and how far from there
-// its slope is measured, px.
-constexpr int kLeastShadow_px = 2;
-constexpr int kShadowsOfImage = 3;  // a third of the image at most
-constexpr int kClear_px = 2;
-constexpr int kSlope_px = 4;
-// The fringe goes on across a shadow if it is off by no more, turns; a gap that is no shadow fits
-// by chance in a quarter of its lines.
-constexpr float kBridgeFit = 0.12F;
 constexpr int kLeastBridges = 6;
 constexpr double kBridgeShare = 0.6;
-constexpr std::size_t kMostBridges = 8192;
+constexpr int kSureBridges = 12;  // of what moves: fewer are seen at what comes into the light
+// A border that motion blurs is off by more than that, but by less than half a fringe: then many
+// lines must agree.
+constexpr int kRoughBridges = 10;
+constexpr double kRoughShare = 0.8;
+constexpr int kStrongBridges = 12;
+constexpr double kStrongShare = 0.9;
+// A surface goes on where so much of the contact says it.
+constexpr double kGoesOnShare = 0.7;
 // What moves smears its shadow's border: so many images on end must say that a component lies
 // elsewhere than it did.
 constexpr int kDoubts = 12;
+constexpr int kStrongDoubts = 2;  // where many lines say the same
 // What a shadow may be measured from: scraps at the edges of things that move are of no surface.
 constexpr int kBridgeablePixels = 1500;
 
@@ -73,6 +71,17 @@ int ComponentOrders::Votes::best() const noexcept {
     return found;
 }
 
+int ComponentOrders::Votes::reached(double share) const noexcept {
+    int sum = 0;
+    for (int order = low_; order <= high_; ++order) {
+        sum += of(order);
+        if (sum >= share * total_) {
+            return order;
+        }
+    }
+    return low_;
+}
+
 ComponentOrders::ComponentOrders(Size image, Axis axis, const Triangulation* geometry,
                                  double period_px, int coded_length_px)
     : size_(image), along_x_(axis == Axis::x), metric_(geometry != nullptr) {
@@ -80,7 +89,8 @@ ComponentOrders::ComponentOrders(Size image, Axis axis, const Triangulation* geo
                     (image.height + kGrid_px - 1) / kGrid_px};
     // Values of a component span at most the projector, and so do orders, both ways.
     const int reach = 2 * static_cast<int>(std::ceil(coded_length_px / period_px)) + 4;
-    for (Votes* votes : {&home_, &possible_, &before_, &sure_before_, &bridged_, &sure_bridged_}) {
+    for (Votes* votes : {&home_, &possible_, &before_, &sure_before_, &bridged_, &sure_bridged_,
+                         &behind_, &goes_on_, &rough_}) {
         votes->create(reach);
     }
     const auto samples =
@@ -121,6 +131,8 @@ void ComponentOrders::forget() noexcept {
     orders_.clear();
     ambiguous_.clear();
     doubts_.clear();
+    recent_.reset();
+    backdrop_.reset();
     standing_out_ = 0.0;
 }
 
@@ -129,66 +141,6 @@ float ComponentOrders::value_at(const Input& input, int x, int y,
     const PhasePlace place = input.unwrapper.place(x, y);
     id = place.component;
     return kPerTurn * input.phase_rad.at(x, y) + static_cast<float>(place.turns);
-}
-
-// Where a projector's shadow lies between two surfaces, the ray that grazes one of them arrives at
-// the other: the projector's phase goes on across it, turns and all.
-void ComponentOrders::bridge_line(const Input& input, int line) noexcept {
-    const int length = along_x_ ? size_.width : size_.height;
-    const std::ptrdiff_t next = along_x_ ? 1 : input.phase_rad.stride;
-    const float* phase = along_x_ ? input.phase_rad.row(line) : input.phase_rad.data + line;
-    const auto raw_at = [&](int i, std::uint16_t& id) {
-        const int x = along_x_ ? i : line;
-        const int y = along_x_ ? line : i;
-        const float taken_off =
-            input.reference_rad.empty() ? 0.0F : kPerTurn * input.reference_rad.at(x, y);
-        return value_at(input, x, y, id) + taken_off;
-    };
-    // The value at a border of the shadow, going by what lies `away` from it.
-    const auto edge = [&](int border, int away, std::uint16_t& id) {
-        std::uint16_t beyond = 0;
-        const float clear = raw_at(border + away * kClear_px, id);
-        const float far = raw_at(border + away * (kClear_px + kSlope_px), beyond);
-        id = id == beyond ? id : std::uint16_t{0};
-        constexpr float kShare = static_cast<float>(kClear_px) / kSlope_px;
-        return clear + kShare * (clear - far);
-    };
-    constexpr int kMargin = kClear_px + kSlope_px;
-    int last_seen = -1;
-    for (int i = 0; i < length; ++i) {
-        if (std::isnan(phase[i * next])) {
-            continue;
-        }
-        const int gap = i - last_seen - 1;
-        const int from = last_seen;
-        last_seen = i;
-        if (gap < kLeastShadow_px || gap > length / kShadowsOfImage || from < kMargin ||
-            i + kMargin >= length || bridges_.size() >= kMostBridges) {
-            continue;
-        }
-        Bridge bridge;
-        const float left = edge(from, -1, bridge.from);
-        const float right = edge(i, 1, bridge.to);
-        if (bridge.from == bridge.to || bridge.from == 0 || bridge.to == 0 ||
-            !std::isfinite(left - right)) {
-            continue;
-        }
-        const float orders = std::nearbyint(left - right);
-        bridge.orders = static_cast<std::int32_t>(orders);
-        bridge.fits = std::fabs(left - right - orders) <= kBridgeFit;
-        bridges_.push_back(bridge);
-    }
-}
-
-void ComponentOrders::find_bridges(const Input& input) noexcept {
-    bridges_.clear();
-    if (input.components.size() < 2) {
-        return;
-    }
-    const int lines = along_x_ ? size_.height : size_.width;
-    for (int line = kGrid_px / 2; line < lines; line += kGrid_px) {
-        bridge_line(input, line);
-    }
 }
 
 void ComponentOrders::sample(const Input& input, const PhaseComponent& component) noexcept {
@@ -228,7 +180,7 @@ void ComponentOrders::vote(const Input& input, const Sample& s) noexcept {
     home_.add(static_cast<int>(std::lround(home - s.value)));
     const float before = kPerTurn * input.before_rad.at(s.x, s.y);
     const std::uint16_t id = input.component_before.at(s.x, s.y);
-    // What was background says nothing of what has come before it.
+    // What was background, or stood still, says nothing of what has come before it.
     if (id != 0 && id <= ambiguous_before_.size() && std::isfinite(before) &&
         (metric_ || std::fabs(before) > kStandsOut)) {
         const auto order = static_cast<int>(std::lround(before - s.value));
@@ -240,42 +192,137 @@ void ComponentOrders::vote(const Input& input, const Sample& s) noexcept {
     }
 }
 
+// Turns that a pixel shows of what is so far away: of depths a share of the volume, of heights
+// turns.
+float ComponentOrders::turns_at(const Sample& s, float distance) const noexcept {
+    if (!metric_) {
+        return distance;
+    }
+    const float low = low_turns_.at(s.x / kGrid_px, s.y / kGrid_px);
+    const float high = high_turns_.at(s.x / kGrid_px, s.y / kGrid_px);
+    return low + distance * (high - low);
+}
+
+// The inverse: of the component at hand with this order, its mean.
+float ComponentOrders::distance_of(int order) const noexcept {
+    float sum = 0.0F;
+    for (const Sample& s : samples_) {
+        const float zero = turns_at(s, 0.0F);
+        sum += (s.value + static_cast<float>(order) - zero) / (turns_at(s, 1.0F) - zero);
+    }
+    return sum / static_cast<float>(samples_.size());
+}
+
+// What a pixel shows when nothing is before it, turns; NaN: nobody knows.
+float ComponentOrders::known_behind(const Input& input, const Sample& s) const noexcept {
+    const float known = kPerTurn * input.known_rad.at(s.x, s.y);
+    return std::isfinite(known) || !backdrop_ ? known : turns_at(s, *backdrop_);
+}
+
+void ComponentOrders::vote_behind(const Input& input, const Sample& s) noexcept {
+    if (input.known_rad.empty() || front_ == 0.0) {
+        return;
+    }
+    const float known = known_behind(input, s);
+    if (std::isfinite(known)) {
+        const auto front = static_cast<float>(front_);
+        behind_.add(static_cast<int>(std::ceil(front * (known - s.value) - kVolumeSlack)));
+    }
+}
+
+bool ComponentOrders::in_front(int order) const noexcept {
+    return behind_.total() == 0 || static_cast<int>(front_) * order >= nearest_known_;
+}
+
+bool ComponentOrders::is_possible(int order) const noexcept {
+    return in_front(order) &&
+           (!metric_ ||
+            possible_.of(order) >= kPossibleShare * static_cast<double>(samples_.size()));
+}
+
+// Where the last thing was that moved; else the farthest place before what stands still.
+int ComponentOrders::newcomer() const noexcept {
+    if (recent_) {
+        float off = 0.0F;
+        for (const Sample& s : samples_) {
+            off += turns_at(s, *recent_) - s.value;
+        }
+        const auto order = static_cast<int>(std::lround(off / static_cast<float>(samples_.size())));
+        if (is_possible(order)) {
+            return order;
+        }
+    }
+    constexpr int kTried = 16;
+    for (int n = 0; behind_.total() > 0 && n < kTried; ++n) {
+        const int order = static_cast<int>(front_) * (nearest_known_ + n);
+        if (is_possible(order)) {
+            return order;
+        }
+    }
+    return home_.best();
+}
+
+// The largest thing that moves is where others will be, or it itself if it is lost for a while.
+void ComponentOrders::remember(const Input& input, std::size_t index) noexcept {
+    if (index != 0 || input.components[0].pixels < kBridgeablePixels || (!moving_ && !metric_)) {
+        return;
+    }
+    (moving_ ? recent_ : backdrop_) = distance_of(orders_[index]);
+}
+
 void ComponentOrders::vote_bridges(const Input& input, std::uint16_t id) noexcept {
     bridge_misses_ = 0;
+    touch_misses_ = 0;
     double mean = 0.0;
     for (const Sample& s : samples_) {
         mean += static_cast<double>(s.value) / static_cast<double>(samples_.size());
     }
     for (const Bridge& bridge : bridges_) {
-        const bool forth = bridge.to == id && bridge.from < id;
-        const bool back = bridge.from == id && bridge.to < id;
+        const auto is_known = [&](std::uint16_t other) { return other < id || other == kStill; };
+        const bool forth = bridge.to == id && is_known(bridge.from);
+        const bool back = bridge.from == id && is_known(bridge.to);
         if (!forth && !back) {
             continue;
         }
-        const std::size_t known = (forth ? bridge.from : bridge.to) - 1U;
-        if (input.components[known].pixels < kBridgeablePixels) {
+        const std::uint16_t other = forth ? bridge.from : bridge.to;
+        const bool stands = other == kStill;
+        const std::size_t known = other - 1U;
+        if (!stands && input.components[known].pixels < kBridgeablePixels) {
             continue;
         }
-        const int order = orders_[known] + (forth ? bridge.orders : -bridge.orders);
+        const int order = (stands ? 0 : orders_[known]) + (forth ? bridge.orders : -bridge.orders);
+        if (bridge.touch) {
+            goes_on_.add(order, bridge.fits ? 1 : 0);
+            touch_misses_ += bridge.fits ? 0 : 1;
+            continue;
+        }
         // Nothing is behind the background: that gap is no shadow.
-        const bool behind =
-            !metric_ && input.front * (mean + order) < -static_cast<double>(kStandsOut);
+        const bool behind = !in_front(order) || (!metric_ && input.front * (mean + order) <
+                                                                 -static_cast<double>(kStandsOut));
+        rough_.add(order, behind ? 0 : 1);
         if (!bridge.fits || behind) {
             bridge_misses_ += behind ? 0 : 1;
             continue;
         }
         bridged_.add(order);
-        if (ambiguous_[known] == 0) {
+        if (stands || ambiguous_[known] == 0) {
             sure_bridged_.add(order);
         }
     }
 }
 
-void ComponentOrders::decide(std::size_t index) noexcept {
+// True of lesser things at the largest one that moves.
+bool ComponentOrders::beside_largest(const Input& input, std::size_t index) const noexcept {
+    constexpr int kBeside_px = 12;
+    const PhaseComponent& a = input.components[0];
+    const PhaseComponent& b = input.components[index];
+    return moving_ && index > 0 && a.pixels >= kBridgeablePixels && 2 * b.pixels < a.pixels &&
+           b.left_px <= a.right_px + kBeside_px && a.left_px <= b.right_px + kBeside_px &&
+           b.top_px <= a.bottom_px + kBeside_px && a.top_px <= b.bottom_px + kBeside_px;
+}
+
+void ComponentOrders::decide(const Input& input, std::size_t index) noexcept {
     const double samples = static_cast<double>(samples_.size());
-    const auto is_possible = [&](int order) {
-        return !metric_ || possible_.of(order) >= kPossibleShare * samples;
-    };
     int count = 0;
     int least = 0;
     int most = 0;
@@ -290,23 +337,46 @@ void ComponentOrders::decide(std::size_t index) noexcept {
     const bool shadow = bridged_.of(bridged) >= kLeastBridges && is_possible(bridged) &&
                         bridged_.of(bridged) >= kBridgeShare * (bridged_.total() + bridge_misses_);
     const bool tracked = before_.of(before) >= kBeforeShare * samples && is_possible(before);
-    const bool doubted = shadow && tracked && bridged != before;
-    doubts_[index] = doubted && doubt_ < kDoubts ? static_cast<std::uint8_t>(doubt_ + 1) : 0;
+    const bool sure_before = tracked && 2 * sure_before_.of(before) >= before_.of(before);
+    const int rough = rough_.best();
+    const bool roughly = rough_.of(rough) >= kRoughBridges && is_possible(rough) &&
+                         rough_.of(rough) >= kRoughShare * rough_.total();
+    const bool doubted = tracked && ((shadow && bridged != before) || (roughly && rough != before));
+    const bool strongly = roughly && rough_.of(rough) >= kStrongBridges &&
+                          rough_.of(rough) >= kStrongShare * rough_.total();
+    const int enough = strongly ? kStrongDoubts : kDoubts;
+    doubts_[index] = doubted && doubt_ < enough ? static_cast<std::uint8_t>(doubt_ + 1) : 0;
     bool sure = false;
-    int order = home_.best();
-    if (metric_ && count <= 1) {
+    const bool largest = index == 0 && !moving_;
+    int order = largest ? home_.best() : newcomer();
+    const int on = goes_on_.best();
+    const bool goes_on = goes_on_.of(on) >= kLeastBridges &&
+                         goes_on_.of(on) >= kGoesOnShare * (goes_on_.total() + touch_misses_);
+    if (goes_on) {
+        // What something that moved has uncovered; that lay before what is known.
+        order = on;
+        sure = true;
+    } else if (metric_ && count <= 1) {
         // Where none is possible the most of it is kept, and the volume cuts off the rest.
-        order = possible_.best();
+        order = count == 1 ? least : possible_.best();
         sure = count == 1;
-    } else if (!metric_ && index == 0) {
+    } else if (!metric_ && largest) {
         sure = true;  // what most of the image is, is the background
-    } else if (shadow && (!doubted || doubts_[index] == 0)) {
+    } else if (shadow && doubts_[index] == 0) {
         order = bridged;
-        sure = 2 * sure_bridged_.of(bridged) >= bridged_.of(bridged);
+        sure = 2 * sure_bridged_.of(bridged) >= bridged_.of(bridged) &&
+               (!moving_ || bridged_.of(bridged) >= kSureBridges);
+    } else if (beside_largest(input, index) && is_possible(newcomer())) {
+        // A finger that was cut off: a fringe is longer than a hand.
+        order = newcomer();
+        sure = ambiguous_[0] == 0;
+    } else if (roughly && (doubts_[index] == 0 || !sure_before)) {
+        order = rough;
+        sure = tracked && rough == before;
     } else if (tracked) {
         order = before;
-        sure = 2 * sure_before_.of(before) >= before_.of(before);
-    } else if (index == 0) {
+        sure = sure_before;
+    } else if (largest) {
         // The same: the farthest that it can be.
         order = far_is_low_ ? least : most;
     } else if (!is_possible(order)) {
@@ -323,17 +393,24 @@ void ComponentOrders::choose(const Input& input) noexcept {
     orders_.assign(input.components.size(), 0);
     ambiguous_.assign(input.components.size(), 1);
     standing_out_ = 0.0;
+    front_ = metric_ ? (far_is_low_ ? 1.0 : -1.0) : input.front;
+    moving_ = input.still_pixels > (input.components.empty() ? 0 : input.components[0].pixels);
     find_bridges(input);
     for (std::size_t i = 0; i < std::min(input.components.size(), kMostComponents); ++i) {
         doubt_ = 0;
         sample(input, input.components[i]);
         for (const Sample& s : samples_) {
             vote(input, s);
+            if (i > 0 || moving_) {
+                vote_behind(input, s);
+            }
         }
+        nearest_known_ = behind_.reached(kPossibleShare);
         vote_bridges(input, input.components[i].id);
-        decide(i);
-        for (Votes* votes :
-             {&home_, &possible_, &before_, &sure_before_, &bridged_, &sure_bridged_}) {
+        decide(input, i);
+        remember(input, i);
+        for (Votes* votes : {&home_, &possible_, &before_, &sure_before_, &bridged_, &sure_bridged_,
+                             &behind_, &goes_on_, &rough_}) {
             votes->clear();
         }
         for (const Sample& s : samples_) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,8 @@ class ComponentOrders {
  public:
     /// Components after this many, the smallest, are put where their seeds say.
     static constexpr std::size_t kMostComponents = 256;
+    /// In component_before: what stood still.
+    static constexpr std::uint16_t kStill = kMaxPhaseComponents + 1;
 
     /// Allocates for all images to come.
     /// @param geometry null: values are heights above a background at 0
@@ -41,6 +44,13 @@ class ComponentOrders {
         ImageView<const std::uint16_t> component_before;
         /// Of heights: 1 where more phase is nearer, -1 where less is, 0 where that is not known.
         double front = 0.0;
+        /// Pixels that stand still, with all turns, NaN elsewhere: no component is there. Empty:
+        /// nothing is known of what stands still.
+        ImageView<const float> still_rad = {};
+        ImageView<const float> known_rad = {};  ///< StillScene::known_rad()
+        ImageView<const float> modulation = {};
+        ImageView<const float> all_rad = {};  ///< phase_rad, and all that was taken out of it
+        int still_pixels = 0;
     };
     /// Replaces the orders of the image before.
     void choose(const Input& input) noexcept;
@@ -51,10 +61,16 @@ class ComponentOrders {
     [[nodiscard]] bool ambiguous(std::size_t index) const noexcept {
         return ambiguous_[index] != 0;
     }
+    /// Of depths: farther away is less phase.
+    [[nodiscard]] bool far_is_low() const noexcept { return far_is_low_; }
     /// How far and on how many places pixels stand out from 0, turns; negative: behind it.
     [[nodiscard]] double standing_out() const noexcept { return standing_out_; }
 
  private:
+    static constexpr float kPerTurn = 0.15915494F;     ///< turns of a radian
+    static constexpr int kGrid_px = 4;                 ///< on which pixels are asked
+    static constexpr std::size_t kMostBridges = 8192;  ///< of an image; more are not looked at
+
     /// Votes for orders, kept clean between uses.
     class Votes {
      public:
@@ -70,6 +86,8 @@ class ComponentOrders {
         [[nodiscard]] int total() const noexcept { return total_; }
         /// Of the most votes, the least such; 0 where there are none.
         [[nodiscard]] int best() const noexcept;
+        /// The least order up to which so much of the votes are; `share` 0 ... 1.
+        [[nodiscard]] int reached(double share) const noexcept;
 
      private:
         std::vector<std::int32_t> counts_;
@@ -78,13 +96,32 @@ class ComponentOrders {
         int high_ = -1;
         int total_ = 0;
     };
-    /// Two components on either side of a shadow.
+    /// Two components on either side of a shadow; or where one touches what stands still.
     struct Bridge {
         std::uint16_t from = 0;
         std::uint16_t to = 0;
         std::int32_t orders = 0;  ///< of `to` less that of `from`
-        bool fits = false;        ///< the fringe goes on
+        bool fits = false;        ///< the fringe goes on; where they touch, the light as well
+        bool touch = false;
     };
+    /// What there is on a line of pixels.
+    struct Line {
+        const float* phase_rad = nullptr;  ///< shadows have none
+        const float* still_rad = nullptr;
+        const float* modulation = nullptr;
+        std::ptrdiff_t next = 0;  ///< from a pixel to the next, of each
+        std::ptrdiff_t next_still = 0;
+        std::ptrdiff_t next_modulation = 0;
+        int number = 0;
+        int length = 0;
+        [[nodiscard]] bool stands(int i) const noexcept;
+        [[nodiscard]] bool seen(int i) const noexcept;
+    };
+    [[nodiscard]] Line line_of(const Input& input, int number) const noexcept;
+    /// The value at a border, going by what lies `away` (1 or -1) from it.
+    [[nodiscard]] float edge(const Input& input, const Line& line, int border, int away,
+                             std::uint16_t& id) const noexcept;
+    void add_bridge(const Input& input, const Line& line, int from, int to) noexcept;
     struct Sample {
         int x = 0;
         int y = 0;
@@ -97,8 +134,19 @@ class ComponentOrders {
                                  std::uint16_t& id) const noexcept;
     void sample(const Input& input, const PhaseComponent& component) noexcept;
     void vote(const Input& input, const Sample& sample) noexcept;
+    /// That orders must be in front of what is known to be behind.
+    void vote_behind(const Input& input, const Sample& sample) noexcept;
+    [[nodiscard]] bool in_front(int order) const noexcept;
+    [[nodiscard]] bool is_possible(int order) const noexcept;
+    /// The order of something new that nothing is known of.
+    [[nodiscard]] int newcomer() const noexcept;
+    void remember(const Input& input, std::size_t index) noexcept;
+    [[nodiscard]] float turns_at(const Sample& sample, float distance) const noexcept;
+    [[nodiscard]] float distance_of(int order) const noexcept;
+    [[nodiscard]] float known_behind(const Input& input, const Sample& sample) const noexcept;
     void vote_bridges(const Input& input, std::uint16_t id) noexcept;
-    void decide(std::size_t index) noexcept;
+    [[nodiscard]] bool beside_largest(const Input& input, std::size_t index) const noexcept;
+    void decide(const Input& input, std::size_t index) noexcept;
 
     Size size_;
     bool along_x_ = true;
@@ -113,7 +161,16 @@ class ComponentOrders {
     int doubt_ = 0;  ///< of the component at hand, a frame ago
     std::vector<Sample> samples_;
     std::vector<Bridge> bridges_;
-    Votes home_, possible_, before_, sure_before_, bridged_, sure_bridged_;
+    Votes home_, possible_, before_, sure_before_, bridged_, sure_bridged_, behind_, goes_on_,
+        rough_;
+    int touch_misses_ = 0;
+    double front_ = 0.0;     ///< Input::front, of depths too
+    int nearest_known_ = 0;  ///< of the component at hand: front_ times an order must reach it
+    bool moving_ = false;    ///< all components are of what moves; the rest stands still
+    /// How far away the largest surface is that all is before; empty: heights are before 0, or
+    /// nobody knows. And the largest thing that moved last.
+    std::optional<float> backdrop_;
+    std::optional<float> recent_;
     int bridge_misses_ = 0;
     double standing_out_ = 0.0;
 };

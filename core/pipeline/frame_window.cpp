@@ -57,8 +57,10 @@ void FrameWindow::make_room(Slot& slot, std::uint64_t show) noexcept {
 }
 
 void FrameWindow::push(const FramePtr& frame) noexcept {
-    const bool goes_on =
-        pushed_ > 0 && frame->pattern == pattern_ && frame->sequence == sequence_ + 1;
+    // A pattern that never changes would be one show without an end, and its images are not to be
+    // averaged: what moves would smear.
+    const bool goes_on = slots_.size() > 1 && pushed_ > 0 && frame->pattern == pattern_ &&
+                         frame->sequence == sequence_ + 1;
     if (!goes_on) {
         ++shows_;
         last_show_frames_ = show_frames_;

@@ -169,6 +169,9 @@ Result<PaperDecoder> PaperDecoder::create(const PatternSequence& patterns, Size 
         impl->carrier_falls =
             impl->geometry && impl->plan.carrier() && falls(*impl->geometry, patterns.axis, image);
         impl->one_image = std::move(one_image);
+        if (settings.motion != MotionHandling::off) {
+            impl->scene.emplace(image);
+        }
         return PaperDecoder(std::move(impl));
     });
 }
@@ -220,6 +223,7 @@ DecodeStatus PaperDecoder::Impl::push(const FramePtr& frame) noexcept {
         window.clear();
     }
     decode();
+    learn_still();
     return {DecodeState::depth_ready, RejectReason::none};
 }
 
@@ -264,6 +268,9 @@ void PaperDecoder::forget_background() noexcept {
     impl_->background_wrapped = {};
     impl_->background = {};
     impl_->orders.forget();
+    if (impl_->scene) {
+        impl_->scene->forget();
+    }
     impl_->standing_out = 0.0;
 }
 
@@ -276,6 +283,9 @@ void PaperDecoder::reset() noexcept {
     impl_->last_stamp.reset();
     impl_->decoded = false;
     impl_->orders.forget();
+    if (impl_->scene) {
+        impl_->scene->forget();
+    }
 }
 
 int PaperDecoder::frames_needed() const noexcept {

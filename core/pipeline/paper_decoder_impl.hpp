@@ -13,6 +13,7 @@
 #include "core/pipeline/component_orders.hpp"
 #include "core/pipeline/decode_plan.hpp"
 #include "core/pipeline/frame_window.hpp"
+#include "core/pipeline/still_scene.hpp"
 #include "core/unwrap/spatial.hpp"
 
 namespace xtrack {
@@ -36,7 +37,13 @@ struct PaperDecoder::Impl {
     /// Solves and writes the phase as it is, and finds the plane of its largest surface.
     bool learn_plane(bool keep_seen);
     void write_results() noexcept;
-    void write_row(int y) noexcept;
+    [[nodiscard]] double front_of_phase() const noexcept;
+    void write_still_row(int y) noexcept;
+    void learn_still() noexcept;
+    void write_row(int y) noexcept;  ///< turns and components
+    void fill_outlines() noexcept;
+    void fill_outline(int x, int y) noexcept;
+    void write_depth_row(int y) noexcept;
     void mask_results() noexcept;
     void stamp_results() noexcept;
 
@@ -53,6 +60,8 @@ struct PaperDecoder::Impl {
     /// Of periods that are one image, in colours or in space; steps are decoded here.
     std::optional<DepthDecoder> one_image;
     bool carrier_falls = false;  // the phase of a carrier falls with the pixel's index
+    /// Where what moves is told from what stands still.
+    std::optional<StillScene> scene;
 
     SpatialUnwrapper unwrapper;
     std::optional<Triangulation> geometry;

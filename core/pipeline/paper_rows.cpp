@@ -22,6 +22,9 @@ constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 constexpr int kClipped = 255;
 // What stands out is in front. What was seen in so many images decides, so that one image of
 // little else than noise does not turn depth over; turns times places.
+// What a pixel of an outline may be off its neighbour.
+constexpr float kOutline_rad = 0.8F;
+constexpr int kOutline_px = 4;
 constexpr double kMostStandingOut = 20000.0;
 
 }  // namespace
@@ -169,10 +172,83 @@ void PaperDecoder::Impl::mask_results() noexcept {
     orders.forget();
 }
 
+// 1: more phase is nearer; -1: less is.
+double PaperDecoder::Impl::front_of_phase() const noexcept {
+    return geometry ? (orders.far_is_low() ? 1.0 : -1.0) : front;
+}
+
+// What stands still, beside the components.
+void PaperDecoder::Impl::write_still_row(int y) noexcept {
+    const float* still = scene->still_rad().row(y);
+    float* row_unwrapped = unwrapped.row(y);
+    std::uint16_t* ids = component.row(y);
+    for (int x = 0; x < size.width; ++x) {
+        const bool stands = still[x] == still[x];
+        row_unwrapped[x] = stands ? still[x] : row_unwrapped[x];
+        ids[x] = stands ? ComponentOrders::kStill : ids[x];
+    }
+}
+
+void PaperDecoder::Impl::learn_still() noexcept {
+    if (scene) {
+        scene->learn(std::as_const(unwrapped).view(), std::as_const(component).view(),
+                     std::as_const(phase_map.modulation).view(), front_of_phase(), depth.stamp);
+    }
+}
+
 void PaperDecoder::Impl::write_row(int y) noexcept {
-    const float* phase = geometry ? phase_map.phase_rad.row(y) : difference.row(y);
+    const float* phase = scene      ? scene->moving_rad().row(y)
+                         : geometry ? std::as_const(phase_map.phase_rad).row(y)
+                                    : std::as_const(difference).row(y);
     float* row_unwrapped = unwrapped.row(y);
     unwrapper.write_row(y, phase, orders.orders(), row_unwrapped, component.row(y));
+    if (scene) {
+        write_still_row(y);
+    }
+}
+
+// An outline that was cut out is of what moves, where its phase goes on from there. It stays in no
+// component: nothing is learnt from it.
+void PaperDecoder::Impl::fill_outline(int x, int y) noexcept {
+    const float phase = (geometry ? phase_map.phase_rad : difference).at(x, y);
+    constexpr std::array<std::array<int, 2>, 4> kWays{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
+    float best = kOutline_rad;
+    for (const auto& way : kWays) {
+        for (int n = 1; n <= kOutline_px; ++n) {
+            const int u = x + n * way[0];
+            const int v = y + n * way[1];
+            if (u < 0 || v < 0 || u >= size.width || v >= size.height) {
+                break;
+            }
+            const std::uint16_t id = component.at(u, v);
+            if (id == 0) {
+                continue;
+            }
+            const float beside = unwrapped.at(u, v);
+            const float off = std::remainder(phase - beside, static_cast<float>(kTurn_rad));
+            if (id != ComponentOrders::kStill && std::fabs(off) < best) {
+                best = std::fabs(off);
+                unwrapped.at(x, y) = beside + off;
+            }
+            break;
+        }
+    }
+}
+
+void PaperDecoder::Impl::fill_outlines() noexcept {
+    for (int y = 0; y < size.height; ++y) {
+        const float* phase = (geometry ? phase_map.phase_rad : difference).row(y);
+        const std::uint16_t* ids = component.row(y);
+        for (int x = 0; x < size.width; ++x) {
+            if (ids[x] == 0 && !std::isnan(phase[x])) {
+                fill_outline(x, y);
+            }
+        }
+    }
+}
+
+void PaperDecoder::Impl::write_depth_row(int y) noexcept {
+    const float* row_unwrapped = unwrapped.row(y);
     DepthRow row;
     const double px_per_rad = period->period_px / kTurn_rad;
     if (geometry) {
@@ -209,14 +285,31 @@ void PaperDecoder::Impl::write_row(int y) noexcept {
 }
 
 void PaperDecoder::Impl::write_results() noexcept {
-    const ImageView<const float> phase =
+    const ImageView<const float> all =
         geometry ? std::as_const(phase_map.phase_rad).view() : std::as_const(difference).view();
+    ImageView<const float> phase = all;
+    if (scene) {
+        scene->divide(all, std::as_const(phase_map.modulation).view());
+        phase = scene->moving_rad().view();
+    }
     const auto found = unwrapper.solve(phase, phase_map.modulation.view());
     unwrapped.swap(unwrapped_before);
     component.swap(component_before);
-    orders.choose({unwrapper, found, phase, std::as_const(background).view(),
-                   std::as_const(unwrapped_before).view(), std::as_const(component_before).view(),
-                   standing_out == 0.0 ? 0.0 : front});
+    ComponentOrders::Input input{unwrapper,
+                                 found,
+                                 phase,
+                                 std::as_const(background).view(),
+                                 std::as_const(unwrapped_before).view(),
+                                 std::as_const(component_before).view(),
+                                 standing_out == 0.0 ? 0.0 : front};
+    if (scene) {
+        input.still_rad = scene->still_rad().view();
+        input.known_rad = scene->known_rad().view();
+        input.modulation = std::as_const(phase_map.modulation).view();
+        input.all_rad = all;
+        input.still_pixels = scene->still_pixels();
+    }
+    orders.choose(input);
     if (!geometry) {
         standing_out =
             std::clamp(standing_out + orders.standing_out(), -kMostStandingOut, kMostStandingOut);
@@ -224,6 +317,15 @@ void PaperDecoder::Impl::write_results() noexcept {
     }
     for (int y = 0; y < size.height; ++y) {
         write_row(y);
+        if (!scene) {
+            write_depth_row(y);
+        }
+    }
+    if (scene) {
+        fill_outlines();
+        for (int y = 0; y < size.height; ++y) {
+            write_depth_row(y);
+        }
     }
     components.clear();
     for (std::size_t i = 0; i < found.size(); ++i) {

@@ -47,8 +47,9 @@ struct PhasePlace {
     std::int32_t turns = 0;       ///< 0 at the component's seed
 };
 
-/// Largest number of components in an image; of more, the smallest are masked.
-inline constexpr int kMaxPhaseComponents = 65535;
+/// Largest number of components in an image; of more, the smallest are masked. One id is left for
+/// callers.
+inline constexpr int kMaxPhaseComponents = 65534;
 
 /// Unwraps a phase image from its own content: the order of a pixel is that of its neighbour, plus
 /// or minus one where the phase jumps. Paths must keep away from noise and depth steps, so places

@@ -20,6 +20,9 @@ Mat4d facing_the_user() {
     return m;
 }
 
+/// Every image is a phase of its own, which no motion tears.
+bool never_changes(const PatternSequence& patterns) { return patterns.patterns.size() == 1; }
+
 }  // namespace
 
 Result<Processor> Processor::for_frames(const Rig& rig, const PatternSequence& patterns,
@@ -30,6 +33,9 @@ Result<Processor> Processor::for_frames(const Rig& rig, const PatternSequence& p
         return for_paper(rig, patterns, options);
     }
     auto decoder = DepthDecoder::create(rig, patterns, rig.camera.size, options.decode);
+    if (!decoder && options.method == DecodeMethod::automatic && never_changes(patterns)) {
+        return for_paper(rig, patterns, options);  // the picture orders what no pattern does
+    }
     if (!decoder) {
         return decoder.error();
     }
@@ -45,6 +51,9 @@ Result<Processor> Processor::for_paper(const Rig& rig, const PatternSequence& pa
     const bool metric = rig.projector.has_value();
     PaperSettings settings = options.paper;
     settings.points = false;
+    if (options.method == DecodeMethod::automatic || never_changes(patterns)) {
+        settings.motion = options.decode.motion;
+    }
     auto decoder =
         PaperDecoder::create(patterns, rig.camera.size, settings, metric ? &rig : nullptr);
     if (!decoder) {

@@ -168,6 +168,9 @@ GestureScorer::GestureScorer(const GestureSettings& settings) {
     if (settings.pinch) {
         scored_.emplace_back("pinch");
     }
+    if (settings.wave) {
+        scored_.emplace_back("wave");
+    }
 }
 
 bool GestureScorer::scored(std::string_view name) const {

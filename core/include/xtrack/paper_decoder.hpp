@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include <xtrack/decode_settings.hpp>
 #include <xtrack/depth.hpp>
 #include <xtrack/depth_decoder.hpp>
 #include <xtrack/frame.hpp>
@@ -42,6 +43,9 @@ struct PaperSettings {
     int min_component_px = 64;
     /// Whether points() is made.
     bool points = true;
+    /// Off: every image is unwrapped for itself, as in the paper. Else what has not moved keeps its
+    /// place, and only the rest is looked at anew. Only create() looks at it.
+    MotionHandling motion = MotionHandling::off;
 };
 
 /// @return invalid_argument that names the first setting out of its documented range
@@ -65,9 +69,10 @@ struct PaperComponent {
 /// (quality-guided unwrapping in space). Colour fringes and Gray codes are not used; of several
 /// periods the shortest is, and frames of other patterns are passed over.
 ///
-/// Surfaces that nothing connects leave open by how many whole fringes they lie apart. Where a
-/// shadow of the projector parts them, the fringe that leaves one edge arrives at the other, which
-/// says it. Else a component lies where it was a frame ago. Else, and always within it:
+/// Surfaces that nothing connects leave open by how many whole fringes they lie apart. What stands
+/// still keeps its place where PaperSettings::motion is not off, and what moves is before it. Where
+/// a shadow of the projector parts them, the fringe that leaves one edge arrives at the other,
+/// which says it. Else a component lies where it was a frame ago. Else, and always within it:
 ///  - with a rig, where its depths lie in the working volume: the largest component as far away as
 ///    it can be, others in the middle of that. depth() is in millimetres.
 ///  - without one, nearest to the background; depth() is relative (`metric` false): the phase less
@@ -127,7 +132,7 @@ class PaperDecoder {
     /// With a rig: the projector phase with all its whole turns, rad. Without: what it is off the
     /// background's. NaN where masked.
     [[nodiscard]] const Image<float>& unwrapped_rad() const noexcept;
-    /// Id of each pixel's component, 0 = none, and what is known of them.
+    /// Id of each pixel's component, 0 = none, 65535 = it stands still; and what is known of them.
     [[nodiscard]] const Image<std::uint16_t>& component() const noexcept;
     [[nodiscard]] std::span<const PaperComponent> components() const noexcept;
 

@@ -2,6 +2,7 @@
 #include "core/decode/colour_palette.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -167,6 +168,62 @@ TEST_F(Palette, TheSameFramesGiveTheSameBits) {
     settle({});
     EXPECT_EQ(at(150, 130).log_gain, first.log_gain);
     EXPECT_EQ(at(150, 130).contrast, first.contrast);
+}
+
+// One period and nothing else: a contrast must not change with the phase.
+class LonePalette : public Palette {
+ protected:
+    LonePalette() {
+        const Size samples = ColourPalette::samples(kImage);
+        const Image<float> first_px(samples.width, samples.height, 0.0F);
+        const Image<float> last_px(samples.width, samples.height, 1024.0F);
+        palette_ = ColourPalette(kImage, model_, kFine, {}, first_px, last_px);
+    }
+    void put_alone(const Scene& scene) {
+        palette_.begin();
+        for (int y = 0; y < kImage.height; y += ColourPalette::kSampleStepPx) {
+            const ColourSamplesOut out = palette_.row(y);
+            for (int x = 0; x < kImage.width; x += ColourPalette::kSampleStepPx) {
+                const auto at = static_cast<std::size_t>(x / ColourPalette::kSampleStepPx);
+                put(scene, x, y, at, out);
+                out.reference_px[at] = std::numeric_limits<float>::quiet_NaN();
+            }
+            palette_.add_row(y);
+        }
+        palette_.choose();
+    }
+    void expect_roughly(const ColourPixel& truth, int x, int y) const {
+        const std::array<float, 3> gains = model_.gains(at(x, y));
+        for (const std::size_t k : {0U, 2U}) {
+            EXPECT_NEAR(static_cast<double>(gains[k] / gains[1]), truth.gains[k] / truth.gains[1],
+                        0.12)
+                << x << ' ' << y;
+        }
+    }
+};
+
+TEST_F(LonePalette, KeepsSurfacesApartByTheirContrast) {
+    const Scene scene;
+    for (int n = 0; n < 12; ++n) {
+        put_alone(scene);
+        palette_.learn();
+    }
+    put_alone(scene);
+    expect_roughly(kSkin, 150, 130);
+    expect_roughly(kShirt, 60, 200);
+    expect_roughly(kWall, 300, 220);
+}
+
+TEST_F(LonePalette, SkinThatIsNotInViewStaysSkin) {
+    for (int n = 0; n < 60; ++n) {
+        put_alone({2000.0});
+        palette_.learn();
+    }
+    for (int n = 0; n < 4; ++n) {
+        put_alone({});
+        palette_.learn();
+    }
+    expect_roughly(kSkin, 150, 130);
 }
 
 }  // namespace

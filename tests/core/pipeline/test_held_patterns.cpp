@@ -100,5 +100,16 @@ TEST(HeldPatterns, TheWindowKeepsTheRowsOfTwoShowsAndNoMore) {
     EXPECT_EQ(window.held(0), nullptr);
 }
 
+TEST(HeldPatterns, ImagesOfAPatternThatNeverChangesAreNotAveraged) {
+    FrameWindow window(1);
+    const PatternSequence one = n_step_sequence(Axis::x, {512, 384}, 16.0, 1);
+    for (int n = 0; n < 3; ++n) {
+        window.push(plane_frame(plane_rig(), one, 0, n, kWall));
+    }
+    std::array<const Frame*, FrameWindow::kFramesPerShow> frames{};
+    EXPECT_EQ(window.clean_show(0, 10, frames), 1U);
+    EXPECT_EQ(frames[0]->sequence, 2U);
+}
+
 }  // namespace
 }  // namespace xtrack

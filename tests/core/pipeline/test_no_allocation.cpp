@@ -57,13 +57,15 @@ TEST(NoAllocation, DecodingAllocatesNothing) {
     expect_none(rgb_sequence(Axis::x, {512, 384}, {512.0, 64.0}), PixelFormat::bgr8, 6, 3);
 }
 
-void expect_none_in_paper_mode(const Rig* rig) {
+void expect_none_in_paper_mode(const Rig* rig, MotionHandling motion) {
     if (!test::counts_allocations()) {
         GTEST_SKIP()
             << "allocations cannot be counted here: no glibc, or a sanitizer is in its way";
     }
     const PatternSequence patterns = three_step_sequence(Axis::x, {1280, 768}, 32.0);
-    auto decoder = PaperDecoder::create(patterns, test::StepScene::kCamera, {}, rig);
+    PaperSettings settings;
+    settings.motion = motion;
+    auto decoder = PaperDecoder::create(patterns, test::StepScene::kCamera, settings, rig);
     ASSERT_TRUE(decoder) << decoder.error().message;
     test::StepScene scene;
     std::vector<FramePtr> frames;
@@ -79,7 +81,6 @@ void expect_none_in_paper_mode(const Rig* rig) {
     }
     const long before = test::allocations();
     int depths = 0;
-    PaperSettings settings;
     for (std::size_t n = 3; n < frames.size(); ++n) {
         settings.mode = n < 9 ? CaptureMode::sliding : CaptureMode::burst;
         ASSERT_TRUE(decoder->set_settings(settings));
@@ -94,8 +95,10 @@ void expect_none_in_paper_mode(const Rig* rig) {
 
 TEST(NoAllocation, PaperModeAllocatesNothing) {
     const Rig rig = test::StepScene::rig();
-    expect_none_in_paper_mode(&rig);
-    expect_none_in_paper_mode(nullptr);
+    for (const MotionHandling motion : {MotionHandling::off, MotionHandling::follow}) {
+        expect_none_in_paper_mode(&rig, motion);
+        expect_none_in_paper_mode(nullptr, motion);
+    }
 }
 
 }  // namespace

@@ -303,6 +303,53 @@ TEST(PaperDecoder, PointsAreTheDepthAlongTheRays) {
     EXPECT_TRUE(decoder.points_mm().empty());
 }
 
+// A wall that is darker than the plate before it.
+DecodeState show_on_a_dark_wall(PaperDecoder& decoder, const test::StepScene& scene, int number) {
+    test::StepScene dark = scene;
+    dark.contrast_grey = 90.0;
+    DecodeState state = DecodeState::need_more;
+    for (int n = 0; n < 3; ++n) {
+        const auto frame = dark.frame(fringes(), n, 3 * number + n);
+        const auto bright = scene.frame(fringes(), n, 3 * number + n);
+        for (int v = 0; v < 240; ++v) {
+            for (int u = 0; u < 320; ++u) {
+                if (scene.depth_mm(u, v) == scene.plate_mm) {
+                    frame->pixels.at(u, v) = bright->pixels.at(u, v);
+                }
+            }
+        }
+        state = decoder.push(frame).state;
+    }
+    return state;
+}
+
+TEST(PaperDecoder, AThingWhosePhaseGoesOnIsKeptApartFromWhatStandsStill) {
+    const Rig rig = test::StepScene::rig();
+    test::StepScene scene;
+    for (const bool follow : {false, true}) {
+        PaperSettings settings;
+        settings.motion = follow ? MotionHandling::follow : MotionHandling::off;
+        auto decoder = make(settings, &rig);
+        scene.plate_mm = 0.0;
+        for (int n = 0; n < 10; ++n) {
+            show_on_a_dark_wall(decoder, scene, n);
+        }
+        const double wall_mm = depth_at(decoder, kWallU, kWallV);
+        EXPECT_NEAR(wall_mm, 900.0, 3.0);
+        // Two whole fringes before the wall: no step of the phase tells them apart.
+        scene.plate_mm = 1.0 / (1.0 / 900.0 + 64.0 / 150000.0);
+        ASSERT_EQ(show_on_a_dark_wall(decoder, scene, 10), DecodeState::depth_ready);
+        const bool apart =
+            decoder.component().at(kPlateU, kPlateV) != decoder.component().at(kWallU, kWallV);
+        EXPECT_EQ(apart, follow);
+        EXPECT_NEAR(depth_at(decoder, kWallU, kWallV), 900.0, 3.0);
+        if (follow) {
+            EXPECT_NEAR(depth_at(decoder, kPlateU, kPlateV), scene.plate_mm, 3.0);
+            EXPECT_EQ(decoder.component().at(kWallU, kWallV), 65535);
+        }
+    }
+}
+
 TEST(PaperDecoder, TakesAnyPeriodAndPassesOverOtherPatterns) {
     PatternSequence dual = dual_sequence(Axis::x, {1280, 768}, 512.0, 64.0);
     auto decoder = make({}, nullptr, dual);

@@ -195,5 +195,20 @@ TEST(Scorer, StreamsWithoutLabelsGiveARatePerHour) {
     EXPECT_NEAR(scorer.false_per_hour().high, 5.572, 1e-3);
 }
 
+TEST(Scorer, CountsWavesWhereTheyAreRecognised) {
+    Script script;
+    script.one_shot(GestureType::wave, Direction::none, 2.5);
+    const std::vector<GestureLabel> labels{label("wave", 2.0, 4.0)};
+    GestureSettings settings;
+    for (const bool wave : {true, false}) {
+        settings.wave = wave;
+        GestureScorer scorer(settings);
+        scorer.add(script.events, labels, kLength);
+        EXPECT_EQ(scorer.all().labelled, wave ? 1 : 0);
+        EXPECT_EQ(scorer.all().correct, wave ? 1 : 0);
+        EXPECT_EQ(scorer.all().false_events(), wave ? 0 : 1);
+    }
+}
+
 }  // namespace
 }  // namespace xtrack::test

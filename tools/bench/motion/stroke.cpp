@@ -24,6 +24,8 @@ constexpr double kMeasuredReach_mm = 80.0;
 constexpr int kLeastMeasured = 12;
 // Frames before, for everything that looks back: two cycles and some.
 constexpr int kLeastWarmUp = 12;
+// How long the room is empty before.
+constexpr double kEmptyRoom_s = 0.5;
 // What the projector's response is off by after it was corrected.
 constexpr double kResidualGamma = 1.05;
 // A cheap camera's colours: rows camera R, G, B, columns projector R, G, B.
@@ -52,6 +54,26 @@ SimSettings preset_of(MotionCamera camera) {
         settings.room.ambient_grey *= 0.5;
     }
     return settings;
+}
+
+/// The room without a hand, up to the first moment of a stroke.
+Result<std::vector<FramePtr>> empty_room(SimSettings settings) {
+    settings.script.clear();
+    settings.duration_s = kEmptyRoom_s;
+    auto rig = SimulatedRig::create(settings);
+    if (!rig) {
+        return rig.error();
+    }
+    std::vector<FramePtr> frames;
+    for (;;) {
+        const FrameSource::Item item = (*rig)->next({});
+        if (item.status != SourceStatus::ok) {
+            return frames;
+        }
+        auto earlier = std::make_shared<Frame>(*item.frame);
+        earlier->stamp = earlier->stamp - (*rig)->duration();
+        frames.push_back(std::move(earlier));
+    }
 }
 
 }  // namespace
@@ -127,6 +149,13 @@ Result<Stroke> simulate_stroke(MotionCamera camera, const PatternSequence& patte
         return rig.error();
     }
     Stroke stroke;
+    if (patterns.patterns.size() == 1) {
+        auto room = empty_room(settings);
+        if (!room) {
+            return room.error();
+        }
+        stroke.room = *std::move(room);
+    }
     stroke.decoder_rig = settings.rig;
     if (colour) {
         stroke.decoder_rig.camera_from_projector_rgb = motion_crosstalk();
@@ -145,19 +174,44 @@ Result<Stroke> simulate_stroke(MotionCamera camera, const PatternSequence& patte
     return stroke;
 }
 
+Result<MotionDecoder> MotionDecoder::create(const Rig& rig, const PatternSequence& patterns,
+                                            const DecodeSettings& settings) {
+    MotionDecoder decoder;
+    auto by_patterns = DepthDecoder::create(rig, patterns, rig.camera.size, settings);
+    if (by_patterns) {
+        decoder.by_patterns_ = *std::move(by_patterns);
+        return decoder;
+    }
+    if (patterns.patterns.size() != 1) {
+        return by_patterns.error();
+    }
+    PaperSettings in_space;
+    in_space.points = false;
+    in_space.motion = settings.motion;
+    auto made = PaperDecoder::create(patterns, rig.camera.size, in_space, &rig);
+    if (!made) {
+        return made.error();
+    }
+    decoder.in_space_ = *std::move(made);
+    return decoder;
+}
+
 Result<HandAccuracy> measure_stroke(const Stroke& stroke, const PatternSequence& patterns,
                                     const DecodeSettings& settings) {
     const Size size = stroke.decoder_rig.camera.size;
-    auto decoder = DepthDecoder::create(stroke.decoder_rig, patterns, size, settings);
+    auto decoder = MotionDecoder::create(stroke.decoder_rig, patterns, settings);
     if (!decoder) {
         return decoder.error();
     }
     const auto compare = [](const DepthFrame& depth, const SimTruth& truth) {
         return measure_hand(depth, truth.depth.view(), truth.mask.view(), kMotionLimit_mm);
     };
+    for (const FramePtr& frame : stroke.room) {
+        (void)decoder->push(frame);
+    }
     HandAccuracy all;
     for (const FramePtr& frame : stroke.frames) {
-        if (decoder->push(frame).state != DecodeState::depth_ready) {
+        if (decoder->push(frame) != DecodeState::depth_ready) {
             continue;
         }
         const DepthFrame& depth = decoder->depth();

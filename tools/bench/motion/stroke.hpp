@@ -4,10 +4,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
+#include <xtrack/depth_decoder.hpp>
 #include <xtrack/frame.hpp>
+#include <xtrack/paper_decoder.hpp>
 #include <xtrack/result.hpp>
 #include <xtrack/sim.hpp>
 
@@ -39,9 +42,31 @@ inline constexpr std::array<MotionCamera, 3> kMotionCameras{
 /// One hand that crosses the middle of the view at constant velocity, 600 mm away, before a wall at
 /// 900 mm.
 struct Stroke {
+    /// Half a second of the room without a hand, earlier: of a pattern that never changes, whose
+    /// order comes from what is known of the room. Else none.
+    std::vector<FramePtr> room;
     std::vector<FramePtr> frames;  ///< from before the hand is in view
     std::vector<SimTruth> truths;  ///< of those frames in which it is near the middle
     Rig decoder_rig;               ///< what calibration knows of the rig
+};
+
+/// As sessions decode: a pattern that never changes, and whose order nothing gives, in space.
+class MotionDecoder {
+ public:
+    /// @return an Error of DepthDecoder::create()
+    [[nodiscard]] static Result<MotionDecoder> create(const Rig& rig,
+                                                      const PatternSequence& patterns,
+                                                      const DecodeSettings& settings);
+    [[nodiscard]] DecodeState push(const FramePtr& frame) noexcept {
+        return (in_space_ ? in_space_->push(frame) : by_patterns_->push(frame)).state;
+    }
+    [[nodiscard]] const DepthFrame& depth() const noexcept {
+        return in_space_ ? in_space_->depth() : by_patterns_->depth();
+    }
+
+ private:
+    std::optional<DepthDecoder> by_patterns_;
+    std::optional<PaperDecoder> in_space_;  ///< either this or the other
 };
 
 /// @param velocity_mmps camera frame
@@ -53,7 +78,7 @@ struct Stroke {
 
 /// Decodes a stroke and compares every depth image that is registered to a frame with truth. Where
 /// there is no such image at all, the hand is missing.
-/// @return an Error of DepthDecoder::create()
+/// @return an Error of MotionDecoder::create()
 [[nodiscard]] Result<HandAccuracy> measure_stroke(const Stroke& stroke,
                                                   const PatternSequence& patterns,
                                                   const DecodeSettings& settings);

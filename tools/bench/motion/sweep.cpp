@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include <xtrack/depth_decoder.hpp>
-
 namespace xtrack::tools::bench {
 
 namespace {
@@ -33,8 +31,7 @@ Result<std::vector<Group>> groups_of(const std::vector<std::string>& only) {
 
 // A method that the decoder refuses keeps its reason and no figures; nothing is rendered for it.
 std::string refusal_of(const MotionMethod& method, const Rig& rig) {
-    const auto decoder =
-        DepthDecoder::create(rig, method.patterns, rig.camera.size, method.settings);
+    const auto decoder = MotionDecoder::create(rig, method.patterns, method.settings);
     return decoder ? std::string() : decoder.error().message;
 }
 

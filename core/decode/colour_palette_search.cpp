@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a ColourPalette comes by surfaces that nobody named.
 #include <algorithm>
 #include <array>
 #include <cmath>
