@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -17,6 +18,7 @@
 #include "core/capture/yaml_file.hpp"
 #include "tools/commands.hpp"
 #include "tools/image_size.hpp"
+#include "tools/interrupt.hpp"
 #include "tools/light_report.hpp"
 #include "tools/light_source.hpp"
 #include "tools/method_choice.hpp"
@@ -50,11 +52,21 @@ bool is_there(const fs::path& path) {
     return fs::exists(path, error);
 }
 
+Error of_another_projector(const fs::path& file, Size has, Size measured) {
+    return {ErrorCode::invalid_argument,
+            fmt::format("{}: projector_size is {}x{}, but {}x{} was measured; give the files of "
+                        "this projector",
+                        file.string(), has.width, has.height, measured.width, measured.height)};
+}
+
 // Puts what was measured into a rig.yaml that is there.
-Result<std::string> in_rig_file(const fs::path& file, const LightCalibration& light) {
+Result<std::string> in_rig_file(const fs::path& file, const CalibratedLight& found) {
+    const LightCalibration& light = found.light;
     if (!light.colour) {
         return Error{ErrorCode::unsupported,
-                     file.string() + ": no colours were measured that it could hold"};
+                     file.string() +
+                         ": no colours were measured that it could hold; record colour "
+                         "fringes in colour"};
     }
     const auto bytes = base::read_file(file, capture::kMaxYamlBytes);
     if (!bytes) {
@@ -64,14 +76,20 @@ Result<std::string> in_rig_file(const fs::path& file, const LightCalibration& li
     if (!rig) {
         return rig.error();
     }
+    if (rig->rig.projector && rig->rig.projector->size != found.patterns.projector_size) {
+        return of_another_projector(file, rig->rig.projector->size, found.patterns.projector_size);
+    }
     rig->rig.camera_from_projector_rgb = light.colour->camera_from_projector_rgb;
     return capture::rig_text(*rig);
 }
 
-Result<std::string> in_pattern_file(const fs::path& file, const LightCalibration& light) {
+Result<std::string> in_pattern_file(const fs::path& file, const CalibratedLight& found) {
+    const LightCalibration& light = found.light;
     if (!light.response) {
         return Error{ErrorCode::unsupported,
-                     file.string() + ": no response was measured that it could hold"};
+                     file.string() +
+                         ": no response was measured that it could hold; record a ramp "
+                         "of grey levels"};
     }
     const auto bytes = base::read_file(file, capture::kMaxYamlBytes);
     if (!bytes) {
@@ -81,7 +99,11 @@ Result<std::string> in_pattern_file(const fs::path& file, const LightCalibration
     if (!patterns) {
         return patterns.error();
     }
+    if (patterns->projector_size != found.patterns.projector_size) {
+        return of_another_projector(file, patterns->projector_size, found.patterns.projector_size);
+    }
     patterns->response = light.response->response;
+    patterns->gamma.reset();  // the curve says it better
     return capture::patterns_text(*patterns);
 }
 
@@ -116,7 +138,8 @@ Result<std::vector<std::string>> write_folder(const fs::path& target, Calibrated
 }
 
 // Into the files that are there, each whole or not at all.
-Result<std::vector<std::string>> write_files(const fs::path& out, const LightCalibration& light) {
+Result<std::vector<std::string>> write_files(const fs::path& out, const CalibratedLight& found) {
+    const LightCalibration& light = found.light;
     std::error_code error;
     std::vector<fs::path> files;
     if (fs::is_directory(out, error)) {
@@ -131,7 +154,8 @@ Result<std::vector<std::string>> write_files(const fs::path& out, const LightCal
             return Error{ErrorCode::not_found,
                          out.string() +
                              ": holds neither a rig.yaml for the colours nor a "
-                             "pattern.yaml for the response that were measured"};
+                             "pattern.yaml for the response that were measured; give the folder "
+                             "of a rig, or a new one"};
         }
     } else {
         files.push_back(out);
@@ -140,7 +164,7 @@ Result<std::vector<std::string>> write_files(const fs::path& out, const LightCal
     std::vector<std::string> texts;
     for (const fs::path& file : files) {
         auto text =
-            file.filename() == kRigFile ? in_rig_file(file, light) : in_pattern_file(file, light);
+            file.filename() == kRigFile ? in_rig_file(file, found) : in_pattern_file(file, found);
         if (!text) {
             return text.error();
         }
@@ -156,6 +180,47 @@ Result<std::vector<std::string>> write_files(const fs::path& out, const LightCal
     return written;
 }
 
+// What can be said of --out before anything is measured.
+Result<void> check_out(const LightOptions& options) {
+    const fs::path out = options.out;
+    const bool named = out.filename() == kRigFile || out.filename() == kPatternFile;
+    const auto refuse = [&](const char* why) {
+        return Error{ErrorCode::invalid_argument, "--out " + options.out + why};
+    };
+    std::error_code error;
+    if (is_there(out)) {
+        return fs::is_directory(out, error) || named
+                   ? Result<void>()
+                   : refuse(": give a folder, a rig.yaml or a pattern.yaml");
+    }
+    if (named) {
+        return refuse(": is not there to be updated; give one that is, or a new folder");
+    }
+    const fs::path parent = fs::absolute(out, error).parent_path();
+    return fs::is_directory(parent, error)
+               ? Result<void>()
+               : refuse(": its parent folder is missing; make it first");
+}
+
+// What was measured and has no place among the files: it must not be lost in silence.
+void print_unkept(const LightCalibration& light, const std::vector<std::string>& written) {
+    const auto kept = [&](const char* name) {
+        return std::any_of(written.begin(), written.end(), [&](const std::string& file) {
+            return fs::path(file).filename() == name;
+        });
+    };
+    if (light.colour && !kept(kRigFile)) {
+        fmt::print(stderr,
+                   "xtrack: the matrix of the colours was not stored, for want of a rig.yaml; give "
+                   "one with --out, or write the matrix into it (camera_from_projector_rgb)\n");
+    }
+    if (light.response && !kept(kPatternFile)) {
+        fmt::print(stderr,
+                   "xtrack: the response was not stored, for want of a pattern.yaml; give one with "
+                   "--out\n");
+    }
+}
+
 int calibrate_light(const LightOptions& options) {
     const bool simulated = is_simulator(options.source);
     if (simulated) {
@@ -164,10 +229,10 @@ int calibrate_light(const LightOptions& options) {
         }
     }
     const fs::path out = options.out;
-    if (!options.out.empty() && is_there(out) && !fs::is_directory(out) &&
-        out.filename() != kRigFile && out.filename() != kPatternFile) {
-        return usage({ErrorCode::invalid_argument,
-                      "--out " + options.out + ": give a folder, a rig.yaml or a pattern.yaml"});
+    if (!options.out.empty()) {
+        if (const auto possible = check_out(options); !possible) {
+            return usage(possible.error());
+        }
     }
     auto found = simulated ? light_of_simulation(*preset_of(options.source))
                            : light_of_recording(options.source);
@@ -177,7 +242,7 @@ int calibrate_light(const LightOptions& options) {
     const bool good = !found->light.colour || found->light.colour->passed;
     std::vector<std::string> written;
     if (good && !options.out.empty()) {
-        auto files = is_there(out) ? write_files(out, found->light) : write_folder(out, *found);
+        auto files = is_there(out) ? write_files(out, *found) : write_folder(out, *found);
         if (!files) {
             return fail(files.error());
         }
@@ -190,6 +255,9 @@ int calibrate_light(const LightOptions& options) {
         for (const std::string& file : written) {
             fmt::print("written: {}\n", file);
         }
+    }
+    if (good && !options.out.empty()) {
+        print_unkept(found->light, written);
     }
     if (!good && !options.out.empty()) {
         return fail({ErrorCode::unsupported, "colours failed; nothing was written"});
@@ -204,9 +272,18 @@ Result<PatternSequence> chosen_patterns(const PatternOptions& options, GammaComp
         if (!size) {
             return Error{
                 ErrorCode::invalid_argument,
-                "--size: '" + options.size + "' is none; give the projector's, such as 1280x720"};
+                fmt::format(
+                    "--size: '{}' is none; give the projector's, such as 1280x720, up to {} "
+                    "a side, or a sequence with --from",
+                    options.size, kMaxImageSide_px)};
         }
-        return light_sequence(options.axis == "x" ? Axis::x : Axis::y, *size, options.levels);
+        auto sequence =
+            light_sequence(options.axis == "x" ? Axis::x : Axis::y, *size, options.levels);
+        if (!validate(sequence)) {
+            return Error{ErrorCode::invalid_argument,
+                         "--size " + options.size + ": is too small for the fringes"};
+        }
+        return sequence;
     }
     const auto bytes = base::read_file(options.from, capture::kMaxYamlBytes);
     if (!bytes) {
@@ -230,8 +307,13 @@ int write_patterns(const PatternOptions& options) {
     if (!folder) {
         return fail(folder.error());
     }
+    const NoteInterrupt note;
     Image<std::uint8_t> image;
     for (std::size_t i = 0; i < patterns->patterns.size(); ++i) {
+        if (interrupted()) {
+            fail({ErrorCode::io, "interrupted; nothing was written"});
+            return kInterruptedStatus;
+        }
         const auto format = render_pattern(*patterns, static_cast<int>(i), image, gamma);
         if (!format) {
             return fail(format.error());
@@ -276,33 +358,41 @@ void add_calibrate(CLI::App& app, int& exit_status) {
                      "Folder of a recording of what `calibrate patterns` writes, on a plain wall; "
                      "or sim, sim:webcam-30")
         ->required();
-    light->add_option("--out", light_options->out,
-                      "Where to put what was found: a folder whose rig.yaml and pattern.yaml are "
-                      "updated, one of these files, or a new folder");
+    light
+        ->add_option("--out", light_options->out,
+                     "Where to put what was found: a folder whose rig.yaml and pattern.yaml are "
+                     "updated, one of these files, or a new folder")
+        ->check(not_empty());
     light->add_flag("--json", light_options->json, "The figures as one JSON object");
     light->callback([=, &exit_status] { exit_status = calibrate_light(*light_options); });
 
     auto* patterns = command->add_subcommand(
         "patterns", "Pictures that a projector is to show for `calibrate light`, and pattern.yaml");
     const auto pattern_options = std::make_shared<PatternOptions>();
-    patterns->add_option("--out", pattern_options->out, "New folder for them")->required();
+    patterns->add_option("--out", pattern_options->out, "New folder for them")
+        ->required()
+        ->check(not_empty());
     auto* size = patterns->add_option("--size", pattern_options->size,
                                       "Of the projector, pixels, such as 1280x720");
-    patterns
-        ->add_option("--axis", pattern_options->axis,
-                     "Axis along which fringes change: that of the way from camera to projector")
-        ->check(CLI::IsMember({"x", "y"}))
-        ->capture_default_str();
-    patterns
-        ->add_option("--levels", pattern_options->levels,
-                     "Grey levels of the ramp; 16, 18 and 52 are shown exactly")
-        ->check(CLI::Range(9, 256))
-        ->capture_default_str();
+    auto* axis =
+        patterns
+            ->add_option(
+                "--axis", pattern_options->axis,
+                "Axis along which fringes change: that of the way from camera to projector")
+            ->check(CLI::IsMember({"x", "y"}))
+            ->capture_default_str();
+    auto* levels = patterns
+                       ->add_option("--levels", pattern_options->levels,
+                                    "Grey levels of the ramp; 16, 18 and 52 are shown exactly")
+                       ->check(CLI::Range(9, 256))
+                       ->capture_default_str();
     patterns
         ->add_option("--from", pattern_options->from,
                      "A pattern.yaml whose sequence is drawn instead, compensated by the response "
                      "or gamma in it")
-        ->excludes(size);
+        ->excludes(size)
+        ->excludes(axis)
+        ->excludes(levels);
     patterns->callback([=, &exit_status] { exit_status = write_patterns(*pattern_options); });
 }
 

@@ -105,10 +105,16 @@ Result<Chosen> choose_decoder(const RecordingReader& recording, const PatternSeq
     // One set of patterns is all there is to the first depth; a stream has more to average over.
     settings.taps = options.all ? PhaseTaps::automatic : PhaseTaps::least_squares;
     settings.motion = options.all ? MotionHandling::follow : MotionHandling::off;
+    const OrderSource order_before = settings.order;
     if (const auto set = apply_settings(options.changes, settings); !set) {
         return set.error();
     }
-    settings.keep_maps = true;
+    if (settings.order != order_before) {
+        return Error{ErrorCode::invalid_argument,
+                     "--set order: decode takes the order from the patterns; give --order-from for "
+                     "another"};
+    }
+    settings.keep_maps = true;  // what the files are written from
     const auto create = [&](OrderSource order) {
         settings.order = order;
         return DepthDecoder::create(recording.rig(), patterns, recording.image_size(), settings);

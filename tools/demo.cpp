@@ -20,6 +20,7 @@
 #include "core/base/file.hpp"
 #include "tools/commands.hpp"
 #include "tools/event_output.hpp"
+#include "tools/method_choice.hpp"
 #include "tools/pictures.hpp"
 #include "tools/stream.hpp"
 #include "tools/trial.hpp"
@@ -173,6 +174,23 @@ void print_trial(const char* preset, std::size_t seed, const TrialResult& result
     std::fflush(stdout);
 }
 
+// Whether both rigs can show the method, before either plays: `auto` finds one for each.
+Result<void> check_method(const DemoOptions& demo) {
+    if (demo.method.empty() || demo.method == "auto") {
+        return {};
+    }
+    for (const char* preset : kPresets) {
+        auto settings = SimSettings::preset(preset);
+        if (!settings) {
+            return settings.error();
+        }
+        if (auto shown = show_method(demo.method, GestureSettings{}, *settings); !shown) {
+            return Error{shown.error().code, fmt::format("{}: {}", preset, shown.error().message)};
+        }
+    }
+    return {};
+}
+
 /// Many people, no pictures: what went wrong is listed by seed. Trials are independent, so every
 /// processor runs some; results are taken in the order of the seeds.
 Result<std::vector<Scored>> score_seeds(const DemoOptions& demo) {
@@ -238,8 +256,10 @@ void add_demo(CLI::App& app, int& exit_status) {
     const auto demo = std::make_shared<DemoOptions>();
     command->add_option("--out", demo->out, "Folder for pictures and events.jsonl")
         ->default_str("demo-out");
-    command->add_option("--method", demo->method,
-                        "What the projector shows; auto or a name from `xtrack methods`");
+    command
+        ->add_option("--method", demo->method,
+                     "What the projector shows; auto or a name from `xtrack methods`")
+        ->check(not_empty());
     command->add_flag("--fast", demo->fast, "As fast as it goes instead of in real time");
     command
         ->add_option("--seeds", demo->seeds,
@@ -248,6 +268,12 @@ void add_demo(CLI::App& app, int& exit_status) {
         ->excludes("--out", "--fast");
     command->add_flag("--json", demo->json, "Print the scores as JSON");
     command->callback([=, &exit_status] {
+        if (const auto possible = check_method(*demo); !possible) {
+            exit_status = possible.error().code == ErrorCode::invalid_argument
+                              ? usage(possible.error())
+                              : fail(possible.error());
+            return;
+        }
         const auto all = demo->seeds > 0 ? score_seeds(*demo) : play_presets(*demo);
         if (!all) {
             exit_status = fail(all.error());

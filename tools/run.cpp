@@ -74,9 +74,10 @@ void add_run(CLI::App& app, int& exit_status) {
         ->default_str("sim");
     command->add_option("--seed", run->seed, "Simulator: another person, movement and noise")
         ->check(CLI::PositiveNumber);
-    command->add_option(
-        "--method", run->method,
-        "Simulator: what the projector shows; auto or a name from `xtrack methods`");
+    command
+        ->add_option("--method", run->method,
+                     "Simulator: what the projector shows; auto or a name from `xtrack methods`")
+        ->check(not_empty());
     add_stream_options(*command, run->stream);
     command->callback([=, &exit_status] {
         SessionOptions options;

@@ -228,6 +228,16 @@ Result<void> RecordingReader::read_frame(std::size_t index, Frame& out,
             return info.error();
         }
         colour = info->channels > 2;  // two are grey and its opacity
+    } else if (colour && entry.pattern != kUnknownPattern) {
+        const auto info = capture::peek_image(*bytes, file.string());
+        if (!info) {
+            return info.error();
+        }
+        if (info->channels < 3) {
+            return Error{ErrorCode::invalid_argument,
+                         file.string() + ": is grey, but its pattern is told by its colours; " +
+                             "record it in colour"};
+        }
     }
     out.status = FrameStatus::ok;
     out.format = colour ? PixelFormat::bgr8 : PixelFormat::grey8;

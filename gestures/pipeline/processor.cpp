@@ -32,6 +32,11 @@ Result<Processor> Processor::for_frames(const Rig& rig, const PatternSequence& p
         (options.method == DecodeMethod::automatic && !has_rig)) {
         return for_paper(rig, patterns, options);
     }
+    if (options.decode.order != OrderSource::automatic) {
+        return Error{ErrorCode::invalid_argument,
+                     "decode settings: order must be automatic, as a session needs depth and has "
+                     "no other to begin with"};
+    }
     auto decoder = DepthDecoder::create(rig, patterns, rig.camera.size, options.decode);
     if (!decoder && options.method == DecodeMethod::automatic && never_changes(patterns)) {
         return for_paper(rig, patterns, options);  // the picture orders what no pattern does

@@ -145,6 +145,40 @@ TEST_F(CalibrateLight, WritesNothingWhereItFails) {
     EXPECT_FALSE(fs::exists(out));
 }
 
+TEST_F(CalibrateLight, SaysWhatItCouldNotStore) {
+    record();
+    fs::remove(recording_ / "rig.yaml");
+    const fs::path out = folder_.path() / "new";
+    const Outcome outcome =
+        xtrack_command({"calibrate", "light", recording_.string(), "--out", out.string()});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_TRUE(fs::exists(out / "pattern.yaml"));
+    EXPECT_THAT(outcome.err, HasSubstr("matrix of the colours was not stored"));
+}
+
+TEST_F(CalibrateLight, AFileThatIsNotThereIsNotMadeAFolder) {
+    record();
+    const fs::path file = recording_ / "other" / "rig.yaml";
+    fs::create_directory(file.parent_path());
+    const Outcome outcome =
+        xtrack_command({"calibrate", "light", recording_.string(), "--out", file.string()});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("is not there to be updated"));
+    EXPECT_FALSE(fs::exists(file));
+}
+
+TEST_F(CalibrateLight, LeavesTheFilesOfAnotherProjectorAlone) {
+    record();
+    const fs::path other = folder_.path() / "other";
+    const Outcome made =
+        xtrack_command({"calibrate", "patterns", "--size", "800x600", "--out", other.string()});
+    ASSERT_EQ(made.status, 0) << made.err;
+    const Outcome outcome = xtrack_command(
+        {"calibrate", "light", recording_.string(), "--out", (other / "pattern.yaml").string()});
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_THAT(outcome.err, HasSubstr("projector_size is 800x600"));
+}
+
 TEST_F(CalibrateLight, NamesWhatARecordingLacks) {
     const Outcome none = xtrack_command({"calibrate", "light", (folder_.path() / "no").string()});
     EXPECT_EQ(none.status, 1);

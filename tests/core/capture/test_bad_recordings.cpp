@@ -107,6 +107,16 @@ TEST_F(BadRecording, ImageOfAnotherSize) {
     expect_message("000001.png", "is 20x10 pixels, the recording's images are 16x12");
 }
 
+TEST_F(BadRecording, GreyImagesOfColourFringes) {
+    replace("pattern.yaml", "kind: sine", "kind: rgb_sine");
+    const std::string text = text_of(rec_ / "pattern.yaml");
+    const std::size_t from = text.find("phase_rad:");
+    const std::size_t to = text.find('\n', from);
+    set_text(rec_ / "pattern.yaml",
+             text.substr(0, from) + "phase_rad: [ 0., -2.0943951, 2.0943951 ] }" + text.substr(to));
+    expect_message("000000.png", "is grey, but its pattern is told by its colours");
+}
+
 TEST_F(BadRecording, PatternIndexOutOfRange) {
     replace("frames.csv", ",2,2", ",2,3");
     expect_message("frames.csv", "line 4: pattern is '3'");
