@@ -72,7 +72,7 @@ TEST_P(Threads, GiveTheSameBits) {
     auto settings = *SimSettings::preset(GetParam().preset);
     settings.camera.colour = settings.camera.colour || info(GetParam().method).colour;
     settings.script = {{.action = SimAction::swipe_left}};
-    settings.duration_s = 0.6;
+    settings.duration_s = 0.4;
     auto patterns = method_sequence(GetParam().method, settings.rig, Axis::x);
     ASSERT_TRUE(patterns) << patterns.error().message;
     settings.patterns = *patterns;
@@ -80,7 +80,7 @@ TEST_P(Threads, GiveTheSameBits) {
     ASSERT_TRUE(source) << source.error().message;
 
     std::vector<DepthDecoder> decoders;
-    for (const int threads : {1, 2, 3}) {
+    for (const int threads : {1, 3}) {
         DecodeSettings decode;
         decode.keep_maps = true;
         decode.threads = threads;
@@ -109,7 +109,7 @@ TEST_P(Threads, GiveTheSameBits) {
             ASSERT_TRUE(same_bits(one.sigma_mm(), decoders[n].sigma_mm())) << depths;
         }
     }
-    EXPECT_GT(depths, 3);
+    EXPECT_GT(depths, 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Sequences, Threads,
