@@ -96,6 +96,7 @@ TEST_P(Threads, GiveTheSameBits) {
             break;
         }
         std::vector<DecodeState> states;
+        states.reserve(decoders.size());
         for (DepthDecoder& decoder : decoders) {
             states.push_back(decoder.push(item.frame).state);
         }
