@@ -74,7 +74,7 @@ struct DecodeSettings {
     /// Keep phase, modulation, coordinate, average and sigma of each depth; costs memory traffic.
     bool keep_maps = false;
     /// Threads that share the rows of an image, 1 ... 16, the one that pushes included. Results are
-    /// the same, bit by bit.
+    /// the same, bit by bit. Waking them costs about 0.2 ms: for images of 1280x720 and more.
     int threads = 1;
 };
 

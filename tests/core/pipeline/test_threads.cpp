@@ -80,7 +80,7 @@ TEST_P(Threads, GiveTheSameBits) {
     ASSERT_TRUE(source) << source.error().message;
 
     std::vector<DepthDecoder> decoders;
-    for (const int threads : {1, 3}) {
+    for (const int threads : {1, 2, 3}) {
         DecodeSettings decode;
         decode.keep_maps = true;
         decode.threads = threads;
