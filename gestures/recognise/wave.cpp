@@ -123,12 +123,15 @@ void WaveMachine::watch_rest(const Context& c) {
     still_ = still;
 }
 
+bool WaveMachine::rests(const Context& c) const {
+    return still_ && to_ms(c.history.newest().stamp - still_since_) >= c.settings.wave_rest_ms;
+}
+
 void WaveMachine::update(const Context& c) {
     const Stamp now = c.history.newest().stamp;
     watch_rest(c);
     if (state_ == State::recovering) {
-        const bool rests = still_ && to_ms(now - still_since_) >= c.settings.wave_rest_ms;
-        handle(c, rests ? Event::still : Event::moving);
+        handle(c, rests(c) ? Event::still : Event::moving);
         return;
     }
     if (c.gate != Gate::open || c.taken) {
@@ -136,6 +139,9 @@ void WaveMachine::update(const Context& c) {
         return;
     }
     Refusal refusal;
+    if (rests(c)) {
+        forget();  // the stroke that follows is another gesture's
+    }
     const bool turned = follow(c, refusal);
     while (count_ > 0 && to_ms(now - turns_[0].stamp) > c.settings.wave_within_ms) {
         std::rotate(turns_.begin(), turns_.begin() + 1,

@@ -17,8 +17,10 @@ class WaveMachine {
     void update(const Context& c);
     /// The hand was lost, came to the border, or another gesture took it.
     void drop(const Context& c, const char* why);
-    /// Turns were counted: the strokes between them are no swipes.
-    [[nodiscard]] bool swings() const noexcept { return state_ != State::waiting; }
+    /// It went to and fro: its strokes are no swipes. One turn is a wind-up's as well.
+    [[nodiscard]] bool swings() const noexcept {
+        return state_ == State::recovering || count_ >= kSwings;
+    }
 
  private:
     enum class State { waiting, swinging, recovering };
@@ -43,10 +45,12 @@ class WaveMachine {
     /// Follows the palm. True where it has turned back after a stroke that is long enough.
     bool follow(const Context& c, Refusal& refusal);
     void watch_rest(const Context& c);
+    [[nodiscard]] bool rests(const Context& c) const;
     [[nodiscard]] Refusal off_axis(const Context& c) const;
     void commit(const Context& c);
 
     static constexpr std::size_t kMostTurns = 16;
+    static constexpr std::size_t kSwings = 2;  ///< turns; the wind-up of a swipe has one
     State state_ = State::waiting;
     std::array<Turn, kMostTurns> turns_{};  ///< oldest first
     std::size_t count_ = 0;

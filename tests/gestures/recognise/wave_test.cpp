@@ -83,6 +83,21 @@ TEST(Wave, GoesOnWithoutASecondUntilTheHandRests) {
     EXPECT_THAT(story_of(twice), ElementsAre("wave", "wave"));
 }
 
+// To the other side first, with and without a rest there: the stroke that follows is a swipe.
+TEST(Wave, AWindUpDoesNotBlockASwipe) {
+    for (const double rest_ms : {0.0, 500.0}) {
+        Actor actor;
+        const double stroke_ms = 1300 + rest_ms;
+        actor.moments = {{0, {0, 0, 400}},
+                         {800, {0, 0, 400}},
+                         {1300, {70, 0, 400}},
+                         {stroke_ms, {70, 0, 400}},
+                         {stroke_ms + 350, {-130, 0, 400}},
+                         {stroke_ms + 1350, {-130, 0, 400}}};
+        EXPECT_THAT(story_of(actor), ElementsAre("swipe_left")) << rest_ms;
+    }
+}
+
 // Strokes of a wide wave are as long and fast as swipes; the first may be one.
 TEST(Wave, ItsLaterStrokesAreNoSwipes) {
     const auto story = story_of(waving({.width_mm = 160.0, .strokes = 9}));
