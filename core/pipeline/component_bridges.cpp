@@ -95,6 +95,13 @@ void ComponentOrders::add_bridge(const Input& input, const Line& line, int from,
         const float b = line.modulation[(to + kClear_px) * line.next_modulation];
         bridge.fits = bridge.fits && a < kAlike * b && b < kAlike * a;
     }
+    if (!input.reference_rad.empty()) {
+        const auto taken_off = [&](int i) {
+            return along_x_ ? input.reference_rad.at(i, line.number)
+                            : input.reference_rad.at(line.number, i);
+        };
+        bridge.rise = kPerTurn * (taken_off(to) - taken_off(from));
+    }
     bridges_.push_back(bridge);
 }
 
@@ -127,6 +134,28 @@ void ComponentOrders::find_bridges(const Input& input) noexcept {
     const int lines = along_x_ ? size_.height : size_.width;
     for (int line = kGrid_px / 2; line < lines; line += kGrid_px) {
         bridge_line(input, line);
+    }
+}
+
+// A thing casts its shadow to one side. As the phase goes on across it, the thing's height is what
+// the background rises by between the two: which says whether more phase is nearer.
+void ComponentOrders::count_shadows(const Input& input) noexcept {
+    shadows_ = 0;
+    const std::uint16_t background = moving_ ? kStill : std::uint16_t{1};
+    const auto is_thing = [&](std::uint16_t id) {
+        return id != background && id != kStill &&
+               input.components[id - 1U].pixels >= kBridgeablePixels;
+    };
+    for (const Bridge& bridge : bridges_) {
+        if (!bridge.fits || bridge.touch || bridge.rise == 0.0F) {
+            continue;
+        }
+        const int way = bridge.rise > 0.0F ? 1 : -1;
+        if (bridge.to == background && is_thing(bridge.from)) {
+            shadows_ += way;
+        } else if (bridge.from == background && is_thing(bridge.to)) {
+            shadows_ -= way;
+        }
     }
 }
 

@@ -34,8 +34,6 @@ constexpr double kGoesOnShare = 0.7;
 // elsewhere than it did.
 constexpr int kDoubts = 12;
 constexpr int kStrongDoubts = 2;  // where many lines say the same
-// What a shadow may be measured from: scraps at the edges of things that move are of no surface.
-constexpr int kBridgeablePixels = 1500;
 
 }  // namespace
 
@@ -134,6 +132,7 @@ void ComponentOrders::forget() noexcept {
     recent_.reset();
     backdrop_.reset();
     standing_out_ = 0.0;
+    shadows_ = 0;
 }
 
 float ComponentOrders::value_at(const Input& input, int x, int y,
@@ -216,7 +215,10 @@ float ComponentOrders::distance_of(int order) const noexcept {
 // What a pixel shows when nothing is before it, turns; NaN: nobody knows.
 float ComponentOrders::known_behind(const Input& input, const Sample& s) const noexcept {
     const float known = kPerTurn * input.known_rad.at(s.x, s.y);
-    return std::isfinite(known) || !backdrop_ ? known : turns_at(s, *backdrop_);
+    if (std::isfinite(known)) {
+        return known;
+    }
+    return backdrop_ ? turns_at(s, *backdrop_) : metric_ ? known : 0.0F;
 }
 
 void ComponentOrders::vote_behind(const Input& input, const Sample& s) noexcept {
@@ -396,6 +398,7 @@ void ComponentOrders::choose(const Input& input) noexcept {
     front_ = metric_ ? (far_is_low_ ? 1.0 : -1.0) : input.front;
     moving_ = input.still_pixels > (input.components.empty() ? 0 : input.components[0].pixels);
     find_bridges(input);
+    count_shadows(input);
     for (std::size_t i = 0; i < std::min(input.components.size(), kMostComponents); ++i) {
         doubt_ = 0;
         sample(input, input.components[i]);

@@ -65,11 +65,16 @@ class ComponentOrders {
     [[nodiscard]] bool far_is_low() const noexcept { return far_is_low_; }
     /// How far and on how many places pixels stand out from 0, turns; negative: behind it.
     [[nodiscard]] double standing_out() const noexcept { return standing_out_; }
+    /// Of heights: on how many lines a shadow says that more phase is nearer, less those on which
+    /// one says that less is.
+    [[nodiscard]] int shadows() const noexcept { return shadows_; }
 
  private:
     static constexpr float kPerTurn = 0.15915494F;     ///< turns of a radian
     static constexpr int kGrid_px = 4;                 ///< on which pixels are asked
     static constexpr std::size_t kMostBridges = 8192;  ///< of an image; more are not looked at
+    /// Of what a shadow may be measured: scraps at the edges of things that move are no surface.
+    static constexpr int kBridgeablePixels = 1500;
 
     /// Votes for orders, kept clean between uses.
     class Votes {
@@ -103,6 +108,7 @@ class ComponentOrders {
         std::int32_t orders = 0;  ///< of `to` less that of `from`
         bool fits = false;        ///< the fringe goes on; where they touch, the light as well
         bool touch = false;
+        float rise = 0.0F;  ///< of what was taken off, from one side to the other, turns
     };
     /// What there is on a line of pixels.
     struct Line {
@@ -129,6 +135,7 @@ class ComponentOrders {
     };
 
     void find_bridges(const Input& input) noexcept;
+    void count_shadows(const Input& input) noexcept;
     void bridge_line(const Input& input, int line) noexcept;
     [[nodiscard]] float value_at(const Input& input, int x, int y,
                                  std::uint16_t& id) const noexcept;
@@ -173,6 +180,7 @@ class ComponentOrders {
     std::optional<float> recent_;
     int bridge_misses_ = 0;
     double standing_out_ = 0.0;
+    int shadows_ = 0;
 };
 
 }  // namespace xtrack

@@ -272,6 +272,7 @@ void PaperDecoder::forget_background() noexcept {
         impl_->scene->forget();
     }
     impl_->standing_out = 0.0;
+    impl_->shadows = 0;
 }
 
 void PaperDecoder::reset() noexcept {

@@ -38,6 +38,10 @@ struct PaperDecoder::Impl {
     bool learn_plane(bool keep_seen);
     void write_results() noexcept;
     [[nodiscard]] double front_of_phase() const noexcept;
+    /// Whether the other way is nearer than was thought.
+    [[nodiscard]] bool find_front() noexcept;
+    void order_scene_anew() noexcept;
+    [[nodiscard]] bool front_is_sure() const noexcept;
     void write_still_row(int y) noexcept;
     void learn_still() noexcept;
     void write_row(int y) noexcept;  ///< turns and components
@@ -75,8 +79,10 @@ struct PaperDecoder::Impl {
     Image<float> background;          // the same with its turns
     Image<float> unwrapped, unwrapped_before;
     Image<std::uint16_t> component, component_before;
-    double front = 1.0;         // -1: less phase is nearer
-    double standing_out = 0.0;  // what says so
+    double front = 1.0;  // -1: less phase is nearer
+    // What says so, over the images.
+    int shadows = 0;
+    double standing_out = 0.0;
     DepthFrame depth;
     Image<float> points;  // 3 values a pixel
 

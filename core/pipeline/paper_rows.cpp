@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <numbers>
 #include <span>
@@ -26,6 +27,9 @@ constexpr int kClipped = 255;
 constexpr float kOutline_rad = 0.8F;
 constexpr int kOutline_px = 4;
 constexpr double kMostStandingOut = 20000.0;
+// So many lines with a shadow, less those that contradict, are sure; and no more are remembered.
+constexpr int kSureShadows = 24;
+constexpr int kMostShadows = 480;
 
 }  // namespace
 
@@ -158,6 +162,7 @@ Result<void> PaperDecoder::Impl::learn_background() {
     }
     orders.forget();
     standing_out = 0.0;
+    shadows = 0;
     decode();
     return {};
 }
@@ -172,9 +177,47 @@ void PaperDecoder::Impl::mask_results() noexcept {
     orders.forget();
 }
 
-// 1: more phase is nearer; -1: less is.
+// 1: more phase is nearer; -1: less is; 0: nothing has said so.
 double PaperDecoder::Impl::front_of_phase() const noexcept {
-    return geometry ? (orders.far_is_low() ? 1.0 : -1.0) : front;
+    return geometry ? (orders.far_is_low() ? 1.0 : -1.0) : front_is_sure() ? front : 0.0;
+}
+
+bool PaperDecoder::Impl::front_is_sure() const noexcept {
+    return std::abs(shadows) >= kSureShadows;
+}
+
+// Shadows say which way is nearer; until one is seen, what stands out most is taken to be.
+bool PaperDecoder::Impl::find_front() noexcept {
+    standing_out =
+        std::clamp(standing_out + orders.standing_out(), -kMostStandingOut, kMostStandingOut);
+    shadows = std::clamp(shadows + orders.shadows(), -kMostShadows, kMostShadows);
+    const double before = front;
+    front = front_is_sure() ? (shadows < 0 ? -1.0 : 1.0) : standing_out < 0.0 ? -1.0 : 1.0;
+    return front_is_sure() && front != before && scene;
+}
+
+// Of what stands still, whose orders were chosen for depth the other way round.
+void PaperDecoder::Impl::order_scene_anew() noexcept {
+    scene->show_known();
+    const ImageView<const float> known = scene->moving_rad().view();
+    const auto found = unwrapper.solve(known, scene->known_modulation().view());
+    unwrapped_before.fill(kNone);
+    component_before.fill(0);
+    orders.forget();
+    const ImageView<const float> nothing = std::as_const(unwrapped_before).view();
+    ComponentOrders::Input input{unwrapper, found,
+                                 known,     std::as_const(background).view(),
+                                 nothing,   std::as_const(component_before).view(),
+                                 front};
+    input.known_rad = nothing;
+    orders.choose(input);
+    for (int y = 0; y < size.height; ++y) {
+        unwrapper.write_row(y, known.row(y), orders.orders(), unwrapped.row(y), component.row(y));
+    }
+    scene->replace_known(std::as_const(unwrapped).view());
+    component.fill(0);
+    unwrapped.fill(kNone);
+    orders.forget();
 }
 
 // What stands still, beside the components.
@@ -301,7 +344,7 @@ void PaperDecoder::Impl::write_results() noexcept {
                                  std::as_const(background).view(),
                                  std::as_const(unwrapped_before).view(),
                                  std::as_const(component_before).view(),
-                                 standing_out == 0.0 ? 0.0 : front};
+                                 front_is_sure() || standing_out != 0.0 ? front : 0.0};
     if (scene) {
         input.still_rad = scene->still_rad().view();
         input.known_rad = scene->known_rad().view();
@@ -310,10 +353,10 @@ void PaperDecoder::Impl::write_results() noexcept {
         input.still_pixels = scene->still_pixels();
     }
     orders.choose(input);
-    if (!geometry) {
-        standing_out =
-            std::clamp(standing_out + orders.standing_out(), -kMostStandingOut, kMostStandingOut);
-        front = standing_out < 0.0 ? -1.0 : 1.0;
+    if (!geometry && find_front()) {
+        order_scene_anew();
+        write_results();
+        return;
     }
     for (int y = 0; y < size.height; ++y) {
         write_row(y);

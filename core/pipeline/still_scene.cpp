@@ -179,7 +179,8 @@ void StillScene::learn_pixel(Rival& rival, int x, int y, float phase_rad, float 
     rival.phase_rad += kDrift * (phase_rad - rival.phase_rad);
     rival.modulation += kDrift * (modulation - rival.modulation);
     rival.seen_ms += elapsed_ms;
-    const float before = front * (rival.phase_rad - known);
+    const float off = rival.phase_rad - known;
+    const float before = front == 0.0F ? std::fabs(off) : front * off;
     const float hold = before > kSame_rad     ? kBefore_ms
                        : before >= -kSame_rad ? kRelit_ms
                        : before < -kSame_rad  ? kBehind_ms
@@ -221,6 +222,23 @@ void StillScene::forget() noexcept {
     rivals_.fill(Rival{});
     still_pixels_ = 0;
     images_ = 0;
+}
+
+void StillScene::show_known() noexcept {
+    for (int y = 0; y < size_.height; ++y) {
+        std::transform(known_.row(y), known_.row(y) + size_.width, moving_.row(y), [](float known) {
+            return std::remainder(known, static_cast<float>(kTurn_rad));
+        });
+    }
+    still_.fill(kNone);
+    still_pixels_ = 0;
+}
+
+void StillScene::replace_known(ImageView<const float> unwrapped_rad) noexcept {
+    for (int y = 0; y < size_.height; ++y) {
+        std::copy_n(unwrapped_rad.row(y), size_.width, known_.row(y));
+    }
+    rivals_.fill(Rival{});
 }
 
 }  // namespace xtrack

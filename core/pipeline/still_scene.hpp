@@ -34,11 +34,19 @@ class StillScene {
 
     /// Takes in the image that was divided last, now that its turns are known.
     /// @param component 0 = nothing to learn; elsewhere there is a phase
-    /// @param front 1: more phase is nearer; -1: less is
+    /// @param front 1: more phase is nearer; -1: less is; 0: nobody knows
     /// @param stamp of the image; must not decrease
     void learn(ImageView<const float> unwrapped_rad, ImageView<const std::uint16_t> component,
                ImageView<const float> modulation, double front, Stamp stamp) noexcept;
     void forget() noexcept;
+
+    /// Makes moving_rad() all that is known, wrapped, so that its turns can be found anew.
+    void show_known() noexcept;
+    /// Takes these turns; NaN: the pixel is not known any more.
+    void replace_known(ImageView<const float> unwrapped_rad) noexcept;
+    [[nodiscard]] const Image<float>& known_modulation() const noexcept {
+        return known_modulation_;
+    }
 
  private:
     struct Rival {
