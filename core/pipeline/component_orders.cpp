@@ -81,8 +81,11 @@ int ComponentOrders::Votes::reached(double share) const noexcept {
 }
 
 ComponentOrders::ComponentOrders(Size image, Axis axis, const Triangulation* geometry,
-                                 double period_px, int coded_length_px)
-    : size_(image), along_x_(axis == Axis::x), metric_(geometry != nullptr) {
+                                 double period_px, int coded_length_px, double most_height_px)
+    : size_(image),
+      along_x_(axis == Axis::x),
+      metric_(geometry != nullptr),
+      most_height_(static_cast<float>(most_height_px / period_px)) {
     const Size grid{(image.width + kGrid_px - 1) / kGrid_px,
                     (image.height + kGrid_px - 1) / kGrid_px};
     // Values of a component span at most the projector, and so do orders, both ways.
@@ -162,6 +165,10 @@ void ComponentOrders::sample(const Input& input, const PhaseComponent& component
         samples_.push_back({component.seed_x_px, component.seed_y_px,
                             value_at(input, component.seed_x_px, component.seed_y_px, id)});
     }
+    mean_ = 0.0F;
+    for (const Sample& s : samples_) {
+        mean_ += s.value / static_cast<float>(samples_.size());
+    }
 }
 
 void ComponentOrders::vote(const Input& input, const Sample& s) noexcept {
@@ -238,8 +245,8 @@ bool ComponentOrders::in_front(int order) const noexcept {
 
 bool ComponentOrders::is_possible(int order) const noexcept {
     return in_front(order) &&
-           (!metric_ ||
-            possible_.of(order) >= kPossibleShare * static_cast<double>(samples_.size()));
+           (metric_ ? possible_.of(order) >= kPossibleShare * static_cast<double>(samples_.size())
+                    : std::fabs(mean_ + static_cast<float>(order)) <= most_height_);
 }
 
 // Where the last thing was that moved; else the farthest place before what stands still.
@@ -275,10 +282,6 @@ void ComponentOrders::remember(const Input& input, std::size_t index) noexcept {
 void ComponentOrders::vote_bridges(const Input& input, std::uint16_t id) noexcept {
     bridge_misses_ = 0;
     touch_misses_ = 0;
-    double mean = 0.0;
-    for (const Sample& s : samples_) {
-        mean += static_cast<double>(s.value) / static_cast<double>(samples_.size());
-    }
     for (const Bridge& bridge : bridges_) {
         const auto is_known = [&](std::uint16_t other) { return other < id || other == kStill; };
         const bool forth = bridge.to == id && is_known(bridge.from);
@@ -299,8 +302,10 @@ void ComponentOrders::vote_bridges(const Input& input, std::uint16_t id) noexcep
             continue;
         }
         // Nothing is behind the background: that gap is no shadow.
-        const bool behind = !in_front(order) || (!metric_ && input.front * (mean + order) <
-                                                                 -static_cast<double>(kStandsOut));
+        const bool behind =
+            !in_front(order) ||
+            (!metric_ && input.front * static_cast<double>(mean_ + static_cast<float>(order)) <
+                             -static_cast<double>(kStandsOut));
         rough_.add(order, behind ? 0 : 1);
         if (!bridge.fits || behind) {
             bridge_misses_ += behind ? 0 : 1;

@@ -29,9 +29,10 @@ class ComponentOrders {
     /// Allocates for all images to come.
     /// @param geometry null: values are heights above a background at 0
     /// @param period_px, coded_length_px of the pattern
+    /// @param most_height_px of heights: none is farther from 0
     /// @param axis along which shadows fall in the image, as far as camera and projector agree
     ComponentOrders(Size image, Axis axis, const Triangulation* geometry, double period_px,
-                    int coded_length_px);
+                    int coded_length_px, double most_height_px);
 
     struct Input {
         const SpatialUnwrapper& unwrapper;
@@ -167,6 +168,8 @@ class ComponentOrders {
     std::vector<std::uint8_t> doubts_, doubts_before_;
     int doubt_ = 0;  ///< of the component at hand, a frame ago
     std::vector<Sample> samples_;
+    float mean_ = 0.0F;         ///< value of the samples
+    float most_height_ = 0.0F;  ///< turns
     std::vector<Bridge> bridges_;
     Votes home_, possible_, before_, sure_before_, bridged_, sure_bridged_, behind_, goes_on_,
         rough_;

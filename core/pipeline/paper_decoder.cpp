@@ -78,7 +78,7 @@ PaperDecoder::Impl::Impl(DecodePlan decode_plan, Size image, const PaperSettings
       geometry(std::move(rig_geometry)),
       rays(camera),
       orders(image, plan.axis, geometry ? &*geometry : nullptr, period->period_px,
-             plan.coded_length_px),
+             plan.coded_length_px, (kBackground_mm - kDefaultNearMm) / kMmPerProjectorPx),
       unwrapped(image.width, image.height, kNone),
       unwrapped_before(image.width, image.height, kNone),
       component(image.width, image.height, 0),

@@ -46,6 +46,8 @@ struct PaperDecoder::Impl {
     void learn_still() noexcept;
     void write_row(int y) noexcept;  ///< turns and components
     void fill_outlines() noexcept;
+    void close_bands() noexcept;
+    void close_band(int x, int y, int dx, int dy, int length) noexcept;
     void fill_outline(int x, int y) noexcept;
     void write_depth_row(int y) noexcept;
     void mask_results() noexcept;

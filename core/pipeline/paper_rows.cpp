@@ -26,6 +26,12 @@ constexpr int kClipped = 255;
 // What a pixel of an outline may be off its neighbour.
 constexpr float kOutline_rad = 0.8F;
 constexpr int kOutline_px = 4;
+// A band of what moves that looks as what stands still: how long it is at most, how far its phase
+// may be off a straight line, and rise, and its light differ.
+constexpr int kBand_px = 24;
+constexpr float kBand_rad = 0.6F;
+constexpr float kBandRise_rad = 1.5F;
+constexpr float kBandLight = 1.4F;
 constexpr double kMostStandingOut = 20000.0;
 // So many lines with a shadow, less those that contradict, are sure; and no more are remembered.
 constexpr int kSureShadows = 24;
@@ -290,6 +296,70 @@ void PaperDecoder::Impl::fill_outlines() noexcept {
     }
 }
 
+// Pixels of what moves that happen to look as what stands still behind them did: a run of them that
+// goes on, in phase and in light, from what moves before it to what moves after it.
+void PaperDecoder::Impl::close_band(int x, int y, int dx, int dy, int length) noexcept {
+    const int end_x = x + (length + 1) * dx;
+    const int end_y = y + (length + 1) * dy;
+    const float begin_rad = unwrapped.at(x, y);
+    const float slope = (unwrapped.at(end_x, end_y) - begin_rad) / static_cast<float>(length + 1);
+    const float light =
+        0.5F * (phase_map.modulation.at(x, y) + phase_map.modulation.at(end_x, end_y));
+    if (std::fabs(slope) * static_cast<float>(length + 1) > kBandRise_rad) {
+        return;
+    }
+    const Image<float>& phase = geometry ? phase_map.phase_rad : difference;
+    const auto off = [&](int n) {
+        return std::remainder(
+            phase.at(x + n * dx, y + n * dy) - begin_rad - slope * static_cast<float>(n),
+            static_cast<float>(kTurn_rad));
+    };
+    for (int n = 1; n <= length; ++n) {
+        const float here = phase_map.modulation.at(x + n * dx, y + n * dy);
+        if (!(std::fabs(off(n)) < kBand_rad) || here > kBandLight * light ||
+            light > kBandLight * here) {
+            return;
+        }
+    }
+    for (int n = 1; n <= length; ++n) {
+        const int u = x + n * dx;
+        const int v = y + n * dy;
+        unwrapped.at(u, v) = begin_rad + slope * static_cast<float>(n) + off(n);
+        component.at(u, v) = component.at(x, y);
+        scene->moves(u, v);
+    }
+}
+
+void PaperDecoder::Impl::close_bands() noexcept {
+    const auto moves = [&](int x, int y) {
+        const std::uint16_t id = component.at(x, y);
+        return id != 0 && id != ComponentOrders::kStill;
+    };
+    const auto close_line = [&](int x, int y, int dx, int dy, int length) {
+        int last = -1;  // that moves
+        for (int n = 0; n < length; ++n, x += dx, y += dy) {
+            if (component.at(x, y) == ComponentOrders::kStill) {
+                continue;
+            }
+            const int gap = n - last - 1;
+            if (!moves(x, y)) {
+                last = -1;
+            } else {
+                if (last >= 0 && gap > 0 && gap <= kBand_px) {
+                    close_band(x - (gap + 1) * dx, y - (gap + 1) * dy, dx, dy, gap);
+                }
+                last = n;
+            }
+        }
+    };
+    for (int y = 0; y < size.height; ++y) {
+        close_line(0, y, 1, 0, size.width);
+    }
+    for (int x = 0; x < size.width; ++x) {
+        close_line(x, 0, 0, 1, size.height);
+    }
+}
+
 void PaperDecoder::Impl::write_depth_row(int y) noexcept {
     const float* row_unwrapped = unwrapped.row(y);
     DepthRow row;
@@ -366,6 +436,9 @@ void PaperDecoder::Impl::write_results() noexcept {
     }
     if (scene) {
         fill_outlines();
+        if (!geometry) {
+            close_bands();  // at the price of fingers that nearly meet
+        }
         for (int y = 0; y < size.height; ++y) {
             write_depth_row(y);
         }

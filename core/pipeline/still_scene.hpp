@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include <xtrack/image.hpp>
 #include <xtrack/stamp.hpp>
@@ -39,6 +40,9 @@ class StillScene {
     void learn(ImageView<const float> unwrapped_rad, ImageView<const std::uint16_t> component,
                ImageView<const float> modulation, double front, Stamp stamp) noexcept;
     void forget() noexcept;
+
+    /// The pixel moves after all.
+    void moves(int x, int y) noexcept { still_.at(x, y) = std::numeric_limits<float>::quiet_NaN(); }
 
     /// Makes moving_rad() all that is known, wrapped, so that its turns can be found anew.
     void show_known() noexcept;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gestures/pipeline/processor.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 #include <utility>
@@ -126,6 +127,28 @@ bool Processor::decode(const FramePtr& frame, PipelineView& view) {
     return true;
 }
 
+// The components come with the most pixels first. At first all seems to move.
+int Processor::surfaces() const noexcept {
+    // Shares of the image: one in so many.
+    constexpr int kLeast = 250;
+    constexpr int kMost = 3;
+    const auto components = paper_->components();
+    const auto& size = rig_.camera.size;
+    if (!components.empty() && kMost * components[0].pixels > size.width * size.height) {
+        return -1;
+    }
+    return static_cast<int>(std::count_if(components.begin(), components.end(), [&](const auto& c) {
+        return kLeast * c.pixels >= size.width * size.height;
+    }));
+}
+
+bool Processor::is_followed() const noexcept {
+    constexpr float kSure = 0.8F;
+    const auto hands = camera_hands_.all();
+    return std::any_of(hands.begin(), hands.end(),
+                       [](const Hand& hand) { return hand.confidence >= kSure; });
+}
+
 Result<void> Processor::track(const DepthFrame& depth, PipelineView& view) {
     ++depth_frames_;
     if (depth.depth.size() != tracker_size_) {
@@ -141,7 +164,7 @@ Result<void> Processor::track(const DepthFrame& depth, PipelineView& view) {
         tracker_size_ = depth.depth.size();
     }
     const auto begin = Wall::now();
-    if (relative_ && relative_->update(depth)) {
+    if (relative_ && relative_->update(depth, paper_->component(), surfaces(), is_followed())) {
         tracker_->reset();  // it is of another size now, and so is all that it knows
     }
     camera_hands_ = tracker_->track(relative_ ? relative_->depth() : depth);

@@ -53,6 +53,9 @@ class Processor {
     [[nodiscard]] bool decode(const FramePtr& frame, PipelineView& view);
     /// Depth images of any size go to a tracker of that size, made when the first one comes.
     [[nodiscard]] Result<void> track(const DepthFrame& depth, PipelineView& view);
+    /// How many of the PaperDecoder's components move and are more than scraps; negative: unknown.
+    [[nodiscard]] int surfaces() const noexcept;
+    [[nodiscard]] bool is_followed() const noexcept;  ///< a hand, in the last depth
 
     std::optional<DepthDecoder> decoder_;
     std::optional<PaperDecoder> paper_;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <numbers>
 
@@ -22,9 +24,18 @@ constexpr double kTopShare = 0.97;
 constexpr double kNearShare = 0.6;
 /// A palm less wide is too far away to be seen as a hand, or noise.
 constexpr double kLeastRadius_px = 6.0;
-/// The scale is made once so many images showed something, and anew if the palm is off by more.
+/// The scale is made once so many images showed something, and anew if so many agree that the palm
+/// is off by more. One that serves to follow a hand is kept for longer.
 constexpr std::size_t kFirstImages = 5;
-constexpr double kRescale = 1.4;
+constexpr double kRescale = 1.15;
+constexpr double kRescaleFollowed = 1.4;
+constexpr double kAlike = 1.1;
+constexpr double kAgree = 0.8;
+constexpr double kUsualShare = 0.6;  ///< of the palms, is smaller
+/// Of what stands still only that is looked at which is so near: hands rest, bodies are behind
+/// them.
+constexpr double kRestingShare = 0.75;
+constexpr std::uint16_t kStill = 65535;  ///< PaperDecoder::component()
 constexpr double kLeast_mm = 1.0;
 
 }  // namespace
@@ -49,18 +60,25 @@ RelativeScene::RelativeScene(Size image, double background_mm, double mm_per_px)
     depth_.quality = Image<std::uint8_t>(image.width, image.height, 0);
 }
 
-void RelativeScene::measure(const DepthFrame& relative) {
+bool RelativeScene::measure(const Image<std::uint16_t>& component, int moving_ids) {
     palm_radius_px_ = 0.0;
-    grid_.load(relative, static_cast<float>(kLeast_mm));
     const auto high = static_cast<float>(background_mm_ - mm_per_px_ * kForeground_px);
     heights_.clear();
-    for (const float z : grid_.z) {
-        if (z > 0.0F && z < high) {
-            heights_.push_back(static_cast<float>(height_px(static_cast<double>(z))));
+    std::fill(distance_.begin(), distance_.end(), 0);
+    for (int y = 0; y < grid_.inner_height; ++y) {
+        const std::uint16_t* ids = component.row(y * grid_.scale + grid_.scale / 2);
+        for (int x = 0; x < grid_.inner_width; ++x) {
+            const auto i = static_cast<std::size_t>(grid_.index(x, y));
+            const int id = ids[x * grid_.scale + grid_.scale / 2];
+            const bool counts = moving_ids < 0 || (id > 0 && id <= moving_ids);
+            if (counts && grid_.z[i] > 0.0F && grid_.z[i] < high) {
+                heights_.push_back(static_cast<float>(height_px(static_cast<double>(grid_.z[i]))));
+                distance_[i] = kChamferFar;
+            }
         }
     }
     if (heights_.size() < kLeastCells) {
-        return;
+        return false;
     }
     const auto top = heights_.begin() + static_cast<std::ptrdiff_t>(
                                             kTopShare * static_cast<double>(heights_.size() - 1));
@@ -68,87 +86,106 @@ void RelativeScene::measure(const DepthFrame& relative) {
     const auto near =
         static_cast<float>(background_mm_ - mm_per_px_ * kNearShare * static_cast<double>(*top));
     for (std::size_t i = 0; i < grid_.size(); ++i) {
-        const bool inside = grid_.z[i] > 0.0F && grid_.z[i] <= near;
-        distance_[i] = inside ? kChamferFar : 0;
+        distance_[i] = grid_.z[i] <= near ? distance_[i] : 0;
     }
     spread_distance(grid_, {0, 0, grid_.inner_width, grid_.inner_height}, distance_);
     const auto centre = std::max_element(distance_.begin(), distance_.end());
     const double radius_px = grid_.scale * static_cast<double>(*centre) / kChamferUnit;
     if (radius_px < kLeastRadius_px) {
-        return;
+        return false;
     }
     palm_radius_px_ = radius_px;
     palm_height_px_ = height_px(
         static_cast<double>(grid_.z[static_cast<std::size_t>(centre - distance_.begin())]));
+    return true;
 }
 
-RelativeScene::Palm RelativeScene::usual_palm() {
-    const std::size_t count = std::min(seen_, kRemembered);
-    const auto median = [&](double Palm::*value) {
-        for (std::size_t i = 0; i < count; ++i) {
-            sorted_[i] = palms_[i].*value;
-        }
-        const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(count / 2);
-        std::nth_element(sorted_.begin(), middle,
-                         sorted_.begin() + static_cast<std::ptrdiff_t>(count));
-        return *middle;
-    };
-    return {median(&Palm::radius_px), median(&Palm::height_px)};
+// A hand is seen in part, or from the side, more often than something is taken for a part of it.
+RelativeScene::Palm RelativeScene::usual_palm(std::size_t count) {
+    for (std::size_t n = 0; n < count; ++n) {
+        sorted_[n] = palms_[(seen_ - 1 - n) % kRemembered];
+    }
+    const auto begin = sorted_.begin();
+    const auto end = begin + static_cast<std::ptrdiff_t>(count);
+    const auto usual =
+        begin + static_cast<std::ptrdiff_t>(kUsualShare * static_cast<double>(count));
+    std::nth_element(begin, usual, end,
+                     [](const Palm& a, const Palm& b) { return a.radius_px < b.radius_px; });
+    return *usual;
 }
 
-bool RelativeScene::rescale() {
-    if (palm_radius_px_ <= 0.0) {
+bool RelativeScene::agree(std::size_t count, const Palm& usual) const noexcept {
+    std::size_t alike = 0;
+    for (std::size_t n = 0; n < count; ++n) {
+        const double share = sorted_[n].radius_px / usual.radius_px;
+        alike += share < kAlike && share > 1.0 / kAlike ? 1 : 0;
+    }
+    return static_cast<double>(alike) >= kAgree * static_cast<double>(count);
+}
+
+bool RelativeScene::rescale(bool moves, bool followed) {
+    if (moves && !moved_) {
+        moved_ = true;
+        seen_ = 0;
+    }
+    palms_[seen_++ % kRemembered] = {palm_radius_px_, palm_height_px_};
+    const bool known = inverse_background_ > 0.0;
+    const std::size_t needed = known && followed ? kRemembered : kFirstImages;
+    if (seen_ < needed) {
         return false;
     }
-    palms_[next_] = {palm_radius_px_, palm_height_px_};
-    next_ = (next_ + 1) % kRemembered;
-    ++seen_;
-    if (seen_ < kFirstImages) {
-        return false;
-    }
-    const Palm palm = usual_palm();
+    const Palm palm = usual_palm(needed);
     const double inverse_z = palm.radius_px / (kPalmRadius_mm * focal_px_);
-    if (inverse_background_ > 0.0) {
-        const double expected = inverse_background_ + palm.height_px * inverse_per_px_;
-        const double off = inverse_z / expected;
-        if (seen_ < kRemembered || (off < kRescale && off > 1.0 / kRescale)) {
+    if (known) {
+        const double off = inverse_z / (inverse_background_ + palm.height_px * inverse_per_px_);
+        const double least = followed ? kRescaleFollowed : kRescale;
+        if (!agree(needed, palm) || (off < least && off > 1.0 / least)) {
             return false;
         }
     }
+    usual_height_px_ = palm.height_px;
     inverse_background_ = inverse_z / kBackgroundShare;
     inverse_per_px_ = (inverse_z - inverse_background_) / palm.height_px;
     return true;
 }
 
-void RelativeScene::convert(const DepthFrame& relative) {
+void RelativeScene::convert(const DepthFrame& relative, const Image<std::uint16_t>& component) {
     constexpr float kMost = std::numeric_limits<std::uint16_t>::max();
     const auto unit = static_cast<float>(relative.depth_unit_mm);
     const auto step = static_cast<float>(1.0 / depth_.depth_unit_mm);
     const auto high = static_cast<std::uint16_t>((background_mm_ - mm_per_px_ * kForeground_px) /
                                                  relative.depth_unit_mm);
+    const auto near = static_cast<std::uint16_t>(
+        std::max(1.0, background_mm_ - mm_per_px_ * kRestingShare * usual_height_px_) /
+        relative.depth_unit_mm);
     const auto a =
         static_cast<float>(inverse_background_ + background_mm_ / mm_per_px_ * inverse_per_px_);
     const auto b = static_cast<float>(inverse_per_px_ / mm_per_px_) * unit;
     for (int y = 0; y < depth_.depth.height(); ++y) {
         const std::uint16_t* from = relative.depth.row(y);
         std::uint16_t* to = depth_.depth.row(y);
+        const std::uint16_t* ids = component.row(y);
         for (int x = 0; x < depth_.depth.width(); ++x) {
-            const bool stands_out = from[x] != 0 && from[x] < high;
+            const bool stands_out =
+                from[x] != 0 && from[x] < (moved_ && ids[x] == kStill ? near : high);
             const float z = stands_out ? step / (a - b * static_cast<float>(from[x])) : 0.0F;
             to[x] = z > 0.0F && z < kMost ? static_cast<std::uint16_t>(z) : std::uint16_t{0};
         }
     }
 }
 
-bool RelativeScene::update(const DepthFrame& relative) {
-    measure(relative);
-    const bool rescaled = rescale();
+bool RelativeScene::update(const DepthFrame& relative, const Image<std::uint16_t>& component,
+                           int moving_ids, bool followed) {
+    grid_.load(relative, static_cast<float>(kLeast_mm));
+    const bool moves = moving_ids >= 0 && measure(component, moving_ids);
+    const bool rescaled =
+        (moves || (!moved_ && measure(component, -1))) && rescale(moves, followed);
     depth_.stamp = relative.stamp;
     depth_.sequence = relative.sequence;
     depth_.span = relative.span;
     depth_.quality = relative.quality;
     if (inverse_background_ > 0.0) {
-        convert(relative);
+        convert(relative, component);
     }
     return rescaled;
 }

@@ -17,10 +17,10 @@ namespace xtrack::segment {
 ///
 /// What fringes give without a calibration is how many projector pixels h a surface is off the
 /// background. Pinholes make that 1/Z = 1/Z0 + h/K. The focal length is taken for the image's width
-/// (a field of view of 53 degrees). K and Z0 follow from the hand, which is what stands out most:
-/// the largest circle in it is a palm's, 40 mm, which says how far away it is, and the background
-/// is taken to lie kBackgroundShare times as far away. A hand that is found smaller or larger
-/// again and again makes a new scale.
+/// (a field of view of 53 degrees). K and Z0 follow from the hand, which is what stands out most of
+/// what moves: the largest circle in it is a palm's, 40 mm, which says how far away it is, and the
+/// background is taken to lie kBackgroundShare times as far away. A hand that is found smaller or
+/// larger again and again makes a new scale. Until something moves, what rests is taken for it.
 class RelativeScene {
  public:
     static constexpr double kPalmRadius_mm = 40.0;
@@ -33,8 +33,13 @@ class RelativeScene {
     [[nodiscard]] static Rig nominal_rig(Size image);
 
     /// Takes the next relative depth image. Allocates nothing.
+    /// @param component PaperDecoder::component() of it
+    /// @param moving_ids the components up to this one move, and are no scraps; negative: nobody
+    ///        knows what moves
+    /// @param followed a hand was found in the last depth()
     /// @return whether the scale is new: what was learnt of the scene before is void
-    bool update(const DepthFrame& relative);
+    bool update(const DepthFrame& relative, const Image<std::uint16_t>& component, int moving_ids,
+                bool followed);
 
     /// What stands out from the background, in nominal mm, 0 elsewhere; all 0 while nothing has
     /// stood out yet. Valid until the next update().
@@ -51,10 +56,13 @@ class RelativeScene {
         double height_px = 0.0;
     };
 
-    void measure(const DepthFrame& relative);
-    [[nodiscard]] Palm usual_palm();
-    bool rescale();
-    void convert(const DepthFrame& relative);
+    /// Looks for the palm among components up to `moving_ids`; negative: among all. @return found
+    bool measure(const Image<std::uint16_t>& component, int moving_ids);
+    [[nodiscard]] Palm usual_palm(std::size_t count);
+    /// Whether most of those that usual_palm() looked at are like it.
+    [[nodiscard]] bool agree(std::size_t count, const Palm& usual) const noexcept;
+    bool rescale(bool moves, bool followed);
+    void convert(const DepthFrame& relative, const Image<std::uint16_t>& component);
     [[nodiscard]] double height_px(double depth_mm) const noexcept {
         return (background_mm_ - depth_mm) / mm_per_px_;
     }
@@ -70,11 +78,12 @@ class RelativeScene {
     double palm_height_px_ = 0.0;
     static constexpr std::size_t kRemembered = 21;
     std::array<Palm, kRemembered> palms_{};
-    std::array<double, kRemembered> sorted_{};
+    std::array<Palm, kRemembered> sorted_{};
     std::size_t seen_ = 0;
-    std::size_t next_ = 0;
+    bool moved_ = false;               ///< what is remembered moved
     double inverse_background_ = 0.0;  ///< 1/Z0, 1/mm; 0: no scale yet
-    double inverse_per_px_ = 0.0;      ///< 1/K
+    double usual_height_px_ = 0.0;
+    double inverse_per_px_ = 0.0;  ///< 1/K
 };
 
 }  // namespace xtrack::segment
