@@ -68,6 +68,7 @@ MotionEstimator::MotionEstimator(Size image, int patterns, const Settings& setti
     still_cost_.resize(w, h);
     follow_cost_.resize(w, h);
     row_disturbed_.resize(static_cast<std::size_t>(h), 0);
+    blend_.shares.resize(static_cast<std::size_t>(h), 0);
     active_cells_.reserve(static_cast<std::size_t>(w) * static_cast<std::size_t>(h));
     pairs_.reserve(2 * static_cast<std::size_t>(patterns));
 }
@@ -162,12 +163,14 @@ void MotionEstimator::mark_moving(const Small& now, const Small& before, int lif
     active_cells_.clear();
     const int threshold = static_cast<int>(std::ceil(settings_.noise_levels));
     for (int cy = 0; cy < age_.height(); ++cy) {
+        const bool blended =
+            &before == blend_.of && blend_.shares[static_cast<std::size_t>(cy)] >= 0;
         if (!saw_cells(*now.frame, cy, size_.height) ||
-            !saw_cells(*before.frame, cy, size_.height)) {
+            !(blended || saw_cells(*before.frame, cy, size_.height))) {
             continue;
         }
         for (int cx = 0; cx < age_.width(); ++cx) {
-            if (std::abs(now.cells.at(cx, cy) - before.cells.at(cx, cy)) >= threshold) {
+            if (cells_differ(now, before, cx, cy, 0, 0) >= threshold) {
                 age_.at(cx, cy) = static_cast<std::uint8_t>(lifetime);
                 active_cells_.push_back(
                     {static_cast<std::int16_t>(cx), static_cast<std::int16_t>(cy)});
@@ -266,27 +269,6 @@ void MotionEstimator::take_move(const Shift& shift, double cycles_ago) noexcept 
     bend_path();
 }
 
-// Patterns that are held: the move from one frame of a show to the next. Without such a frame the
-// velocity stays what it was.
-void MotionEstimator::follow_held(const Small& now, const Small* before) noexcept {
-    if (before != nullptr) {
-        const Duration between = now_ - before->frame->stamp;
-        velocity_ = Vec2f::Zero();
-        if (enough_moved()) {
-            const Shift shift = search(now, *before, to_seconds(between));
-            const auto seconds = static_cast<float>(to_seconds(between));
-            velocity_ = Vec2f(static_cast<float>(-shift.dx) / seconds,
-                              static_cast<float>(-shift.dy) / seconds);
-        }
-        remember(now_ - between / 2);
-    }
-    for (std::size_t n = 0; n < history_count_; ++n) {
-        const Past& past = history_[n];
-        moving_ = moving_ || (to_seconds(now_ - past.stamp) <= seconds_per_cycle_ &&
-                              past.velocity != Vec2f::Zero());
-    }
-}
-
 void MotionEstimator::update(const FrameWindow& window, const Frame& newest) noexcept {
     Small& small = take_small(window, newest.pattern);
     shrink(newest, small.cells);
@@ -296,6 +278,7 @@ void MotionEstimator::update(const FrameWindow& window, const Frame& newest) noe
     moving_ = false;
     pairs_.clear();  // they and the cycles point to frames that the window may have let go
     whole_cycles_ = false;
+    blend_.of = nullptr;
     age_cells();
     const auto comparable = [&](const FrameWindow::Entry* entry) -> const Small* {
         const Small* found = find_small(entry);
@@ -328,6 +311,7 @@ void MotionEstimator::update(const FrameWindow& window, const Frame& newest) noe
         follow_cycle(small, *cycle);
     } else {
         if (show != nullptr) {
+            find_blend(window, small, *show);
             mark_moving(small, *show, lifetime);
         }
         follow_held(small, show);
@@ -380,10 +364,10 @@ void MotionEstimator::pair_images(const FrameWindow& window) noexcept {
         const FrameWindow::Entry* now = window.fullest(pattern, 0);
         const FrameWindow::Entry* before = window.fullest(pattern, 1);
         // The move is even for a short time only: of a long cycle the newest images alone can be
-        // held against those a cycle before.
+        // held against those a cycle before. The oldest pattern's say nothing of the time since.
+        const bool short_cycle = patterns_ <= kShortCycle && !held_;
         if (now != nullptr && before != nullptr &&
-            (patterns_ <= kShortCycle ||
-             to_seconds(now_ - now->frame->stamp) < 0.5 * seconds_per_cycle_)) {
+            (short_cycle || to_seconds(now_ - now->frame->stamp) < 0.5 * seconds_per_cycle_)) {
             add(now->frame.get(), before->frame.get());
         }
         const FrameWindow::Entry* held = window.held(pattern);

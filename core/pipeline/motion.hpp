@@ -109,6 +109,17 @@ class MotionEstimator {
     [[nodiscard]] const Small* find_small(const FrameWindow::Entry* entry) const noexcept;
     /// Lists the cells that differ and makes them young.
     void mark_moving(const Small& now, const Small& before, int lifetime) noexcept;
+    /// Finds what the unclean rows of the frame before the newest, of the same show, are mixed of.
+    void find_blend(const FrameWindow& window, const Small& now, const Small& show) noexcept;
+    void fill_shares(int clean_row) noexcept;
+    /// Grey levels by which a cell of `now` and the one that is so many cells on in `before`
+    /// differ.
+    [[nodiscard]] int cells_differ(const Small& now, const Small& before, int cx, int cy, int dx,
+                                   int dy) const noexcept;
+    [[nodiscard]] int pixels_differ(const Small& now, const Small& before, int x, int y, int dx,
+                                    int dy) const noexcept;
+    [[nodiscard]] int blend_differs(int now, int mixed, int earlier, int mixed_row,
+                                    int earlier_row) const noexcept;
     void age_cells() noexcept;
     /// From now to before, by the listed cells.
     [[nodiscard]] Shift search(const Small& now, const Small& before,
@@ -117,10 +128,11 @@ class MotionEstimator {
     [[nodiscard]] Shift search_cycles(double seconds) const noexcept;
     [[nodiscard]] Shift search_cells(const Small& now, const Small& before,
                                      double seconds) const noexcept;
-    /// @param now, before grey level of a pixel; @param saw_row whether `before` saw a row
-    template <class Now, class Before, class Saw>
-    [[nodiscard]] Shift search_pixels(const Now& now, const Before& before, const Saw& saw_row,
-                                      Shift around, int radius, int step) const noexcept;
+    /// @param differ grey levels by which pixel (x, y) and the one that is (dx, dy) on in the
+    ///        image before differ
+    template <class Differ>
+    [[nodiscard]] Shift search_pixels(const Differ& differ, Shift around, int radius,
+                                      int step) const noexcept;
     [[nodiscard]] bool enough_moved() const noexcept;
     void follow_cycle(const Small& now, const Small& before) noexcept;
     void follow_held(const Small& now, const Small* before) noexcept;
@@ -173,6 +185,15 @@ class MotionEstimator {
     void choose_move(const Shift& by_pattern) noexcept;
     void measure_cell_drift() noexcept;
 
+    // A frame that saw the switch from one pattern to the next: row by row, what it shows is so
+    // much of the pattern that it is of, the rest of the one before. `earlier` saw that alone.
+    struct Blend {
+        const Small* of = nullptr;  // null: there is none
+        const Small* earlier = nullptr;
+        std::vector<int> shares;  // of each row of cells, of kWhole; negative: unknown
+    };
+    static constexpr int kWhole = 256;
+
     Size size_;
     int patterns_;
     Settings settings_;
@@ -186,6 +207,7 @@ class MotionEstimator {
     bool whole_cycles_ = false;    // cycles_ hold
     std::array<Cycle, 2> cycles_;  // newest, the one before
     std::array<Small, 2> mean_cells_;
+    Blend blend_;
     Image<Turn> turns_;
     Image<float> cell_drift_rad_;
     float extra_rad_per_s_ = 0.0F;  // beyond the move along the image
