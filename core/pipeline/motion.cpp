@@ -69,6 +69,8 @@ MotionEstimator::MotionEstimator(Size image, int patterns, const Settings& setti
     follow_cost_.resize(w, h);
     row_disturbed_.resize(static_cast<std::size_t>(h), 0);
     blend_.shares.resize(static_cast<std::size_t>(h), 0);
+    stretches_.reserve(kMostStretches);
+    stretch_of_row_.resize(static_cast<std::size_t>(image.height), 0);
     active_cells_.reserve(static_cast<std::size_t>(w) * static_cast<std::size_t>(h));
     pairs_.reserve(2 * static_cast<std::size_t>(patterns));
 }
@@ -163,10 +165,7 @@ void MotionEstimator::mark_moving(const Small& now, const Small& before, int lif
     active_cells_.clear();
     const int threshold = static_cast<int>(std::ceil(settings_.noise_levels));
     for (int cy = 0; cy < age_.height(); ++cy) {
-        const bool blended =
-            &before == blend_.of && blend_.shares[static_cast<std::size_t>(cy)] >= 0;
-        if (!saw_cells(*now.frame, cy, size_.height) ||
-            !(blended || saw_cells(*before.frame, cy, size_.height))) {
+        if (!comparable(now, before, cy)) {
             continue;
         }
         for (int cx = 0; cx < age_.width(); ++cx) {
@@ -279,15 +278,14 @@ void MotionEstimator::update(const FrameWindow& window, const Frame& newest) noe
     pairs_.clear();  // they and the cycles point to frames that the window may have let go
     whole_cycles_ = false;
     blend_.of = nullptr;
+    stretches_.clear();
     age_cells();
-    const auto comparable = [&](const FrameWindow::Entry* entry) -> const Small* {
-        const Small* found = find_small(entry);
+    const auto older = [&](const Small* found) {
         return found != nullptr && found->frame->stamp < newest.stamp ? found : nullptr;
     };
     const FrameWindow::Entry* last = window.fullest(newest.pattern, 1);
-    const Small* cycle = comparable(last);
-    const Small* show = comparable(window.held(newest.pattern));
-    const bool held = show != nullptr || window.frames_of_last_show() > 1;
+    const Small* cycle = older(find_small(last));
+    const bool held = window.held(newest.pattern) != nullptr || window.frames_of_last_show() > 1;
     if (held != held_) {
         held_ = held;
         history_count_ = 0;
@@ -310,11 +308,13 @@ void MotionEstimator::update(const FrameWindow& window, const Frame& newest) noe
     if (!held_) {
         follow_cycle(small, *cycle);
     } else {
-        if (show != nullptr) {
-            find_blend(window, small, *show);
-            mark_moving(small, *show, lifetime);
+        const Small* before = older(find_last(window, small, 1));
+        if (before != nullptr) {
+            find_blend(small, *before, find_last(window, small, 2));
+            mark_moving(small, *before, lifetime);
         }
-        follow_held(small, show);
+        follow_held(small, before);
+        find_stretches(window);
     }
     for (int cy = 0; cy < age_.height(); ++cy) {
         const std::uint8_t* row = age_.row(cy);
@@ -324,6 +324,8 @@ void MotionEstimator::update(const FrameWindow& window, const Frame& newest) noe
     pair_images(window);
     if (whole_cycles_) {
         prepare_views();
+    } else if (!stretches_.empty()) {
+        prepare_stretches();
     }
     if (moving_) {
         choose_cells();
@@ -357,7 +359,7 @@ void MotionEstimator::pair_images(const FrameWindow& window) noexcept {
     pairs_.clear();
     const auto add = [&](const Frame* now, const Frame* before) {
         if (now != nullptr && before != nullptr) {
-            pairs_.push_back({now, before, to(*now), to(*before)});
+            pairs_.push_back({now, before, to(*now), to(*before), {}, {}});
         }
     };
     for (int pattern = 0; pattern < patterns_; ++pattern) {

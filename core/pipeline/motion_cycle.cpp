@@ -89,36 +89,43 @@ float MotionEstimator::drift_rad_since(const Frame& frame) const noexcept {
 void MotionEstimator::prepare_views() noexcept {
     for (Cycle& cycle : cycles_) {
         for (const bool follow : {false, true}) {
-            View& view = cycle.views[follow ? 1 : 0];
-            view.left = 0;
-            view.right = size_.width;
-            view.top = 0;
-            view.bottom = size_.height;
-            view.mean_re = 0.0F;
-            view.mean_im = 0.0F;
-            std::array<double, kCycle> phases{};
-            for (std::size_t p = 0; p < kCycle; ++p) {
-                const Frame& frame = *cycle.frames[p];
-                const Shift shift = follow ? to(frame) : Shift{};
-                const bool grey = frame.format == PixelFormat::grey8;
-                view.step[p] = grey ? 1 : 3;
-                view.stride[p] = frame.pixels.stride();
-                view.origin[p] = frame.pixels.row(0) + (grey ? 0 : 1) + shift.dy * view.stride[p] +
-                                 shift.dx * view.step[p];
-                view.left = std::max(view.left, -shift.dx);
-                view.right = std::min(view.right, size_.width - shift.dx);
-                view.top = std::max(view.top, -shift.dy);
-                view.bottom = std::min(view.bottom, size_.height - shift.dy);
-                phases[p] = settings_.phases_rad[p] +
-                            (follow ? static_cast<double>(drift_rad_since(frame)) : 0.0);
-                view.mean_re += static_cast<float>(std::cos(phases[p]) / kCycle);
-                view.mean_im += static_cast<float>(std::sin(phases[p]) / kCycle);
-            }
-            if (!fit_taps(phases, view.taps)) {
-                view.right = view.left;  // nothing to see
-            }
+            prepare_view(cycle, follow, cycle.views[follow ? 1 : 0]);
         }
     }
+}
+
+void MotionEstimator::prepare_view(const Cycle& cycle, bool follow, View& view) const noexcept {
+    view.left = 0;
+    view.right = size_.width;
+    view.top = 0;
+    view.bottom = size_.height;
+    view.mean_re = 0.0F;
+    view.mean_im = 0.0F;
+    std::array<double, kCycle> phases{};
+    for (std::size_t p = 0; p < kCycle; ++p) {
+        const Frame& frame = *cycle.frames[p];
+        const Shift shift = follow ? to(frame) : Shift{};
+        const bool grey = frame.format == PixelFormat::grey8;
+        view.step[p] = grey ? 1 : 3;
+        view.stride[p] = frame.pixels.stride();
+        view.origin[p] = frame.pixels.row(0) + (grey ? 0 : 1) + shift.dy * view.stride[p] +
+                         shift.dx * view.step[p];
+        view.left = std::max(view.left, -shift.dx);
+        view.right = std::min(view.right, size_.width - shift.dx);
+        view.top = std::max(view.top, frame.clean_row_begin - shift.dy);
+        view.bottom = std::min(view.bottom, frame.clean_row_end - shift.dy);
+        phases[p] = phase_in(frame, static_cast<int>(p), follow);
+        view.mean_re += static_cast<float>(std::cos(phases[p]) / kCycle);
+        view.mean_im += static_cast<float>(std::sin(phases[p]) / kCycle);
+    }
+    if (!fit_taps(phases, view.taps)) {
+        view.right = view.left;  // nothing to see
+    }
+}
+
+double MotionEstimator::phase_in(const Frame& frame, int pattern, bool follow) const noexcept {
+    return settings_.phases_rad[static_cast<std::size_t>(pattern)] +
+           (follow ? static_cast<double>(drift_rad_since(frame)) : 0.0);
 }
 
 bool MotionEstimator::look(const Cycle& cycle, bool follow, int x, int y, Fringe& out) noexcept {
@@ -138,6 +145,9 @@ bool MotionEstimator::look(const Cycle& cycle, bool follow, int x, int y, Fringe
 }
 
 float MotionEstimator::mismatch(int x, int y, bool follow) const noexcept {
+    if (!stretches_.empty()) {
+        return surprise(x, y, follow);
+    }
     if (!whole_cycles_) {
         return static_cast<float>(worst_difference(x, y, follow));
     }

@@ -134,7 +134,7 @@ int MotionEstimator::cells_differ(const Small& now, const Small& before, int cx,
     }
     const int here = now.cells.at(cx, cy);
     const int there = before.cells.at(cx + dx, cy + dy);
-    if (saw_cells(*before.frame, cy + dy, size_.height)) {
+    if (saw_alike(now, before, cy + dy)) {
         return std::abs(here - there);
     }
     // What moves at constant velocity was as far away again in the image before that.
@@ -152,7 +152,7 @@ int MotionEstimator::pixels_differ(const Small& now, const Small& before, int x,
     }
     const int here = grey_at(*now.frame, x, y);
     const int there = grey_at(*before.frame, x + dx, y + dy);
-    if (saw(*before.frame, y + dy)) {
+    if (before.frame->pattern == now.frame->pattern && saw(*before.frame, y + dy)) {
         return std::abs(here - there);
     }
     if (&before != blend_.of || !inside(x + 2 * dx, y + 2 * dy, size_)) {
