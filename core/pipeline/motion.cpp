@@ -213,10 +213,14 @@ Vec2f MotionEstimator::path_since(const Frame& frame) const noexcept {
 }
 
 Shift MotionEstimator::to(const Frame& frame) const noexcept {
+    return shift_along(path_since(frame));
+}
+
+Shift MotionEstimator::shift_along(const Vec2f& path_px) noexcept {
     // A path that leaves every image is as good as any other that does; stamps that are far apart,
     // or all but equal, lead beyond what an int holds.
     constexpr auto kFarthest_px = static_cast<float>(4 * kMaxImageSide_px);
-    const Vec2f path = path_since(frame).cwiseMax(-kFarthest_px).cwiseMin(kFarthest_px);
+    const Vec2f path = path_px.cwiseMax(-kFarthest_px).cwiseMin(kFarthest_px);
     return {-static_cast<int>(std::lround(path.x())), -static_cast<int>(std::lround(path.y()))};
 }
 

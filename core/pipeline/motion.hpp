@@ -199,7 +199,10 @@ class MotionEstimator {
     /// Takes the drift that the move leaves. @return the mismatch of what moves, grey levels
     float measure_drift() noexcept;
     void take_move(const Shift& shift, double cycles_ago) noexcept;
-    /// Between the move that the newest images of one pattern found, and that of the cycles' means.
+    /// From the end of a path back to where it began.
+    [[nodiscard]] static Shift shift_along(const Vec2f& path_px) noexcept;
+    /// Of the move that the newest images of one pattern found, that of the cycles' means, and the
+    /// one before: the one after which two cycles of fringes agree best.
     void choose_move(const Shift& by_pattern) noexcept;
     void measure_cell_drift() noexcept;
 

@@ -6,6 +6,7 @@
 // how far it came along the axis or in depth.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <span>
 
@@ -217,18 +218,39 @@ float MotionEstimator::measure_drift() noexcept {
 }
 
 void MotionEstimator::choose_move(const Shift& by_pattern) noexcept {
-    const float extra_rad_per_s = extra_rad_per_s_;
-    const float pattern_cost = measure_drift();
+    struct Move {
+        Shift shift;
+        double cycles_ago = 0.5;
+    };
     // The mean of a cycle is one image older than its newest.
     constexpr double kMeansAgo = 0.5 + 1.0 / kCycle;
-    const Shift by_mean = search_cycles(seconds_per_cycle_);
-    const float pattern_extra = extra_rad_per_s_;
-    extra_rad_per_s_ = extra_rad_per_s;
-    take_move(by_mean, kMeansAgo);
-    if (measure_drift() >= pattern_cost) {
-        extra_rad_per_s_ = pattern_extra;
-        take_move(by_pattern, 0.5);
+    std::array<Move, 3> moves{Move{by_pattern}, Move{search_cycles(seconds_per_cycle_), kMeansAgo}};
+    std::size_t count = 2;
+    // What is fast uncovers much, and the searches may match that: to go on as before is worth a
+    // look.
+    if (history_count_ > 0) {
+        const Shift goes_on =
+            shift_along(history_[0].velocity * static_cast<float>(seconds_per_cycle_));
+        if (goes_on.dx != by_pattern.dx || goes_on.dy != by_pattern.dy) {
+            moves[count++].shift = goes_on;
+        }
     }
+    const float extra_before = extra_rad_per_s_;
+    float best_extra = extra_before;
+    float best_cost = std::numeric_limits<float>::infinity();
+    std::size_t best = 0;
+    for (std::size_t n = 0; n < count; ++n) {
+        extra_rad_per_s_ = extra_before;
+        take_move(moves[n].shift, moves[n].cycles_ago);
+        const float cost = measure_drift();
+        if (cost < best_cost) {
+            best_cost = cost;
+            best_extra = extra_rad_per_s_;
+            best = n;
+        }
+    }
+    extra_rad_per_s_ = best_extra;
+    take_move(moves[best].shift, moves[best].cycles_ago);
 }
 
 void MotionEstimator::measure_cell_drift() noexcept {

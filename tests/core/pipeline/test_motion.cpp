@@ -185,6 +185,7 @@ TEST_P(Slides, AlongTheFringesAreFollowedToTheNewestFrame) {
 
 INSTANTIATE_TEST_SUITE_P(Motion, Slides,
                          testing::Values(Slide{0, 0.0}, Slide{3, 0.0}, Slide{-3, 0.0},
+                                         Slide{5, 0.0}, Slide{6, 0.0}, Slide{7, 0.0},
                                          Slide{0, 10.0}, Slide{2, 8.0}));
 
 // Which frame of a show that lasts two sees the switch of patterns, in all rows of the card.
