@@ -50,12 +50,13 @@ bool MotionEstimator::comparable(const Small& now, const Small& before, int cy) 
 void MotionEstimator::find_blend(const Small& now, const Small& before,
                                  const Small* earlier) noexcept {
     blend_.of = nullptr;
-    if (earlier == nullptr || earlier->frame->pattern == now.frame->pattern) {
+    const bool same = before.frame->pattern == now.frame->pattern;
+    // Of the three frames two neighbours must be of one show, or nobody knows what was between.
+    if (earlier == nullptr || same == (before.frame->pattern == earlier->frame->pattern)) {
         return;
     }
     blend_.of = &before;
     blend_.earlier = earlier;
-    const bool same = before.frame->pattern == now.frame->pattern;
     for (int cy = 0; cy < age_.height(); ++cy) {
         int& share = blend_.shares[static_cast<std::size_t>(cy)];
         share = -1;
