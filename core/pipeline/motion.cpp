@@ -68,6 +68,9 @@ MotionEstimator::MotionEstimator(Size image, int patterns, const Settings& setti
     still_cost_.resize(w, h);
     follow_cost_.resize(w, h);
     row_disturbed_.resize(static_cast<std::size_t>(h), 0);
+    blend_.shares.resize(static_cast<std::size_t>(h), 0);
+    stretches_.reserve(kMostStretches);
+    stretch_of_row_.resize(static_cast<std::size_t>(image.height), 0);
     active_cells_.reserve(static_cast<std::size_t>(w) * static_cast<std::size_t>(h));
     pairs_.reserve(2 * static_cast<std::size_t>(patterns));
 }
@@ -162,12 +165,11 @@ void MotionEstimator::mark_moving(const Small& now, const Small& before, int lif
     active_cells_.clear();
     const int threshold = static_cast<int>(std::ceil(settings_.noise_levels));
     for (int cy = 0; cy < age_.height(); ++cy) {
-        if (!saw_cells(*now.frame, cy, size_.height) ||
-            !saw_cells(*before.frame, cy, size_.height)) {
+        if (!comparable(now, before, cy)) {
             continue;
         }
         for (int cx = 0; cx < age_.width(); ++cx) {
-            if (std::abs(now.cells.at(cx, cy) - before.cells.at(cx, cy)) >= threshold) {
+            if (cells_differ(now, before, cx, cy, 0, 0) >= threshold) {
                 age_.at(cx, cy) = static_cast<std::uint8_t>(lifetime);
                 active_cells_.push_back(
                     {static_cast<std::int16_t>(cx), static_cast<std::int16_t>(cy)});
@@ -211,10 +213,14 @@ Vec2f MotionEstimator::path_since(const Frame& frame) const noexcept {
 }
 
 Shift MotionEstimator::to(const Frame& frame) const noexcept {
+    return shift_along(path_since(frame));
+}
+
+Shift MotionEstimator::shift_along(const Vec2f& path_px) noexcept {
     // A path that leaves every image is as good as any other that does; stamps that are far apart,
     // or all but equal, lead beyond what an int holds.
     constexpr auto kFarthest_px = static_cast<float>(4 * kMaxImageSide_px);
-    const Vec2f path = path_since(frame).cwiseMax(-kFarthest_px).cwiseMin(kFarthest_px);
+    const Vec2f path = path_px.cwiseMax(-kFarthest_px).cwiseMin(kFarthest_px);
     return {-static_cast<int>(std::lround(path.x())), -static_cast<int>(std::lround(path.y()))};
 }
 
@@ -266,27 +272,6 @@ void MotionEstimator::take_move(const Shift& shift, double cycles_ago) noexcept 
     bend_path();
 }
 
-// Patterns that are held: the move from one frame of a show to the next. Without such a frame the
-// velocity stays what it was.
-void MotionEstimator::follow_held(const Small& now, const Small* before) noexcept {
-    if (before != nullptr) {
-        const Duration between = now_ - before->frame->stamp;
-        velocity_ = Vec2f::Zero();
-        if (enough_moved()) {
-            const Shift shift = search(now, *before, to_seconds(between));
-            const auto seconds = static_cast<float>(to_seconds(between));
-            velocity_ = Vec2f(static_cast<float>(-shift.dx) / seconds,
-                              static_cast<float>(-shift.dy) / seconds);
-        }
-        remember(now_ - between / 2);
-    }
-    for (std::size_t n = 0; n < history_count_; ++n) {
-        const Past& past = history_[n];
-        moving_ = moving_ || (to_seconds(now_ - past.stamp) <= seconds_per_cycle_ &&
-                              past.velocity != Vec2f::Zero());
-    }
-}
-
 void MotionEstimator::update(const FrameWindow& window, const Frame& newest) noexcept {
     Small& small = take_small(window, newest.pattern);
     shrink(newest, small.cells);
@@ -296,15 +281,15 @@ void MotionEstimator::update(const FrameWindow& window, const Frame& newest) noe
     moving_ = false;
     pairs_.clear();  // they and the cycles point to frames that the window may have let go
     whole_cycles_ = false;
+    blend_.of = nullptr;
+    stretches_.clear();
     age_cells();
-    const auto comparable = [&](const FrameWindow::Entry* entry) -> const Small* {
-        const Small* found = find_small(entry);
+    const auto older = [&](const Small* found) {
         return found != nullptr && found->frame->stamp < newest.stamp ? found : nullptr;
     };
     const FrameWindow::Entry* last = window.fullest(newest.pattern, 1);
-    const Small* cycle = comparable(last);
-    const Small* show = comparable(window.held(newest.pattern));
-    const bool held = show != nullptr || window.frames_of_last_show() > 1;
+    const Small* cycle = older(find_small(last));
+    const bool held = window.held(newest.pattern) != nullptr || window.frames_of_last_show() > 1;
     if (held != held_) {
         held_ = held;
         history_count_ = 0;
@@ -327,10 +312,13 @@ void MotionEstimator::update(const FrameWindow& window, const Frame& newest) noe
     if (!held_) {
         follow_cycle(small, *cycle);
     } else {
-        if (show != nullptr) {
-            mark_moving(small, *show, lifetime);
+        const Small* before = older(find_last(window, small, 1));
+        if (before != nullptr) {
+            find_blend(small, *before, find_last(window, small, 2));
+            mark_moving(small, *before, lifetime);
         }
-        follow_held(small, show);
+        follow_held(small, before);
+        find_stretches(window);
     }
     for (int cy = 0; cy < age_.height(); ++cy) {
         const std::uint8_t* row = age_.row(cy);
@@ -340,6 +328,8 @@ void MotionEstimator::update(const FrameWindow& window, const Frame& newest) noe
     pair_images(window);
     if (whole_cycles_) {
         prepare_views();
+    } else if (!stretches_.empty()) {
+        prepare_stretches();
     }
     if (moving_) {
         choose_cells();
@@ -373,17 +363,17 @@ void MotionEstimator::pair_images(const FrameWindow& window) noexcept {
     pairs_.clear();
     const auto add = [&](const Frame* now, const Frame* before) {
         if (now != nullptr && before != nullptr) {
-            pairs_.push_back({now, before, to(*now), to(*before)});
+            pairs_.push_back({now, before, to(*now), to(*before), {}, {}});
         }
     };
     for (int pattern = 0; pattern < patterns_; ++pattern) {
         const FrameWindow::Entry* now = window.fullest(pattern, 0);
         const FrameWindow::Entry* before = window.fullest(pattern, 1);
         // The move is even for a short time only: of a long cycle the newest images alone can be
-        // held against those a cycle before.
+        // held against those a cycle before. The oldest pattern's say nothing of the time since.
+        const bool short_cycle = patterns_ <= kShortCycle && !held_;
         if (now != nullptr && before != nullptr &&
-            (patterns_ <= kShortCycle ||
-             to_seconds(now_ - now->frame->stamp) < 0.5 * seconds_per_cycle_)) {
+            (short_cycle || to_seconds(now_ - now->frame->stamp) < 0.5 * seconds_per_cycle_)) {
             add(now->frame.get(), before->frame.get());
         }
         const FrameWindow::Entry* held = window.held(pattern);

@@ -74,7 +74,7 @@ class MotionEstimator {
     /// each give, and their mean: free of what the drift of the phase changes in the images.
     [[nodiscard]] float mismatch(int x, int y, bool follow) const noexcept;
     /// True where mismatch() is free of the drift, and drift_rad_since() knows it.
-    [[nodiscard]] bool knows_drift() const noexcept { return whole_cycles_; }
+    [[nodiscard]] bool knows_drift() const noexcept { return whole_cycles_ || !stretches_.empty(); }
     /// Phase of what moves when `frame` was exposed, less that of now: what the move adds along the
     /// fringes' axis, and what was measured beyond, such as a change of depth.
     [[nodiscard]] float drift_rad_since(const Frame& frame) const noexcept;
@@ -109,6 +109,22 @@ class MotionEstimator {
     [[nodiscard]] const Small* find_small(const FrameWindow::Entry* entry) const noexcept;
     /// Lists the cells that differ and makes them young.
     void mark_moving(const Small& now, const Small& before, int lifetime) noexcept;
+    [[nodiscard]] const Small* find_last(const FrameWindow& window, const Small& now,
+                                         std::uint64_t ago) const noexcept;
+    [[nodiscard]] bool saw_alike(const Small& now, const Small& before, int cy) const noexcept;
+    /// True where a row of cells in both shows one pattern, or `before` a blend that is known.
+    [[nodiscard]] bool comparable(const Small& now, const Small& before, int cy) const noexcept;
+    /// Finds what the unclean rows of the frame before the newest are mixed of.
+    void find_blend(const Small& now, const Small& before, const Small* earlier) noexcept;
+    void fill_shares() noexcept;
+    /// Grey levels by which a cell of `now` and the one that is so many cells on in `before`
+    /// differ.
+    [[nodiscard]] int cells_differ(const Small& now, const Small& before, int cx, int cy, int dx,
+                                   int dy) const noexcept;
+    [[nodiscard]] int pixels_differ(const Small& now, const Small& before, int x, int y, int dx,
+                                    int dy) const noexcept;
+    [[nodiscard]] int blend_differs(int now, int mixed, int earlier, int mixed_row,
+                                    int earlier_row) const noexcept;
     void age_cells() noexcept;
     /// From now to before, by the listed cells.
     [[nodiscard]] Shift search(const Small& now, const Small& before,
@@ -117,10 +133,11 @@ class MotionEstimator {
     [[nodiscard]] Shift search_cycles(double seconds) const noexcept;
     [[nodiscard]] Shift search_cells(const Small& now, const Small& before,
                                      double seconds) const noexcept;
-    /// @param now, before grey level of a pixel; @param saw_row whether `before` saw a row
-    template <class Now, class Before, class Saw>
-    [[nodiscard]] Shift search_pixels(const Now& now, const Before& before, const Saw& saw_row,
-                                      Shift around, int radius, int step) const noexcept;
+    /// @param differ grey levels by which pixel (x, y) and the one that is (dx, dy) on in the
+    ///        image before differ
+    template <class Differ>
+    [[nodiscard]] Shift search_pixels(const Differ& differ, Shift around, int radius,
+                                      int step) const noexcept;
     [[nodiscard]] bool enough_moved() const noexcept;
     void follow_cycle(const Small& now, const Small& before) noexcept;
     void follow_held(const Small& now, const Small* before) noexcept;
@@ -157,10 +174,23 @@ class MotionEstimator {
         float im = 0.0F;
         int samples = 0;
     };
+    // Where patterns are held: rows whose newest clean images are the same.
+    struct Stretch {
+        int end = 0;  // first row after it
+        Cycle cycle;
+    };
+    /// Empty where some row has not seen every pattern.
+    void find_stretches(const FrameWindow& window) noexcept;
+    void prepare_stretches() noexcept;
+    /// Differences of the images before from what the newest fringes let expect: the largest.
+    [[nodiscard]] float surprise(int x, int y, bool follow) const noexcept;
     [[nodiscard]] bool find_cycles(const FrameWindow& window, const Frame& newest) noexcept;
     [[nodiscard]] static int mean_at(const Cycle& cycle, int x, int y) noexcept;
     void mean_cells(const Cycle& cycle, Image<std::uint8_t>& cells) const noexcept;
     void prepare_views() noexcept;
+    /// Of the fringes that a point of the newest frame shows in `frame`, of `pattern`.
+    [[nodiscard]] double phase_in(const Frame& frame, int pattern, bool follow) const noexcept;
+    void prepare_view(const Cycle& cycle, bool follow, View& view) const noexcept;
     /// False where a shifted image has no such pixel.
     [[nodiscard]] static bool look(const Cycle& cycle, bool follow, int x, int y,
                                    Fringe& out) noexcept;
@@ -169,9 +199,23 @@ class MotionEstimator {
     /// Takes the drift that the move leaves. @return the mismatch of what moves, grey levels
     float measure_drift() noexcept;
     void take_move(const Shift& shift, double cycles_ago) noexcept;
-    /// Between the move that the newest images of one pattern found, and that of the cycles' means.
+    /// From the end of a path back to where it began.
+    [[nodiscard]] static Shift shift_along(const Vec2f& path_px) noexcept;
+    /// Of the move that the newest images of one pattern found, that of the cycles' means, and the
+    /// one before: the one after which two cycles of fringes agree best.
     void choose_move(const Shift& by_pattern) noexcept;
     void measure_cell_drift() noexcept;
+
+    // A frame that saw the switch from one pattern to the next: row by row, what it shows is so
+    // much of the pattern that it is of, the rest of the one before. `earlier` saw that alone.
+    struct Blend {
+        const Small* of = nullptr;  // null: there is none
+        const Small* earlier = nullptr;
+        std::vector<int> shares;  // of each row of cells, of kWhole; negative: unknown
+    };
+    static constexpr int kWhole = 256;
+    // Every frame that the window keeps of a cycle may begin and end one.
+    static constexpr std::size_t kMostStretches = 2 * kCycle * FrameWindow::kDepth + 1;
 
     Size size_;
     int patterns_;
@@ -186,6 +230,9 @@ class MotionEstimator {
     bool whole_cycles_ = false;    // cycles_ hold
     std::array<Cycle, 2> cycles_;  // newest, the one before
     std::array<Small, 2> mean_cells_;
+    Blend blend_;
+    std::vector<Stretch> stretches_;  // empty: none
+    std::vector<std::uint8_t> stretch_of_row_;
     Image<Turn> turns_;
     Image<float> cell_drift_rad_;
     float extra_rad_per_s_ = 0.0F;  // beyond the move along the image
@@ -201,6 +248,8 @@ class MotionEstimator {
         const Frame* now;
         const Frame* before;
         Shift to_now, to_before;
+        // Of the fringes in `before`, standing still and following.
+        std::array<float, 2> cosine{}, sine{};
     };
     std::vector<Pair> pairs_;
     struct Past {

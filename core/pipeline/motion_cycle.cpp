@@ -6,6 +6,7 @@
 // how far it came along the axis or in depth.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <span>
 
@@ -89,36 +90,43 @@ float MotionEstimator::drift_rad_since(const Frame& frame) const noexcept {
 void MotionEstimator::prepare_views() noexcept {
     for (Cycle& cycle : cycles_) {
         for (const bool follow : {false, true}) {
-            View& view = cycle.views[follow ? 1 : 0];
-            view.left = 0;
-            view.right = size_.width;
-            view.top = 0;
-            view.bottom = size_.height;
-            view.mean_re = 0.0F;
-            view.mean_im = 0.0F;
-            std::array<double, kCycle> phases{};
-            for (std::size_t p = 0; p < kCycle; ++p) {
-                const Frame& frame = *cycle.frames[p];
-                const Shift shift = follow ? to(frame) : Shift{};
-                const bool grey = frame.format == PixelFormat::grey8;
-                view.step[p] = grey ? 1 : 3;
-                view.stride[p] = frame.pixels.stride();
-                view.origin[p] = frame.pixels.row(0) + (grey ? 0 : 1) + shift.dy * view.stride[p] +
-                                 shift.dx * view.step[p];
-                view.left = std::max(view.left, -shift.dx);
-                view.right = std::min(view.right, size_.width - shift.dx);
-                view.top = std::max(view.top, -shift.dy);
-                view.bottom = std::min(view.bottom, size_.height - shift.dy);
-                phases[p] = settings_.phases_rad[p] +
-                            (follow ? static_cast<double>(drift_rad_since(frame)) : 0.0);
-                view.mean_re += static_cast<float>(std::cos(phases[p]) / kCycle);
-                view.mean_im += static_cast<float>(std::sin(phases[p]) / kCycle);
-            }
-            if (!fit_taps(phases, view.taps)) {
-                view.right = view.left;  // nothing to see
-            }
+            prepare_view(cycle, follow, cycle.views[follow ? 1 : 0]);
         }
     }
+}
+
+void MotionEstimator::prepare_view(const Cycle& cycle, bool follow, View& view) const noexcept {
+    view.left = 0;
+    view.right = size_.width;
+    view.top = 0;
+    view.bottom = size_.height;
+    view.mean_re = 0.0F;
+    view.mean_im = 0.0F;
+    std::array<double, kCycle> phases{};
+    for (std::size_t p = 0; p < kCycle; ++p) {
+        const Frame& frame = *cycle.frames[p];
+        const Shift shift = follow ? to(frame) : Shift{};
+        const bool grey = frame.format == PixelFormat::grey8;
+        view.step[p] = grey ? 1 : 3;
+        view.stride[p] = frame.pixels.stride();
+        view.origin[p] = frame.pixels.row(0) + (grey ? 0 : 1) + shift.dy * view.stride[p] +
+                         shift.dx * view.step[p];
+        view.left = std::max(view.left, -shift.dx);
+        view.right = std::min(view.right, size_.width - shift.dx);
+        view.top = std::max(view.top, frame.clean_row_begin - shift.dy);
+        view.bottom = std::min(view.bottom, frame.clean_row_end - shift.dy);
+        phases[p] = phase_in(frame, static_cast<int>(p), follow);
+        view.mean_re += static_cast<float>(std::cos(phases[p]) / kCycle);
+        view.mean_im += static_cast<float>(std::sin(phases[p]) / kCycle);
+    }
+    if (!fit_taps(phases, view.taps)) {
+        view.right = view.left;  // nothing to see
+    }
+}
+
+double MotionEstimator::phase_in(const Frame& frame, int pattern, bool follow) const noexcept {
+    return settings_.phases_rad[static_cast<std::size_t>(pattern)] +
+           (follow ? static_cast<double>(drift_rad_since(frame)) : 0.0);
 }
 
 bool MotionEstimator::look(const Cycle& cycle, bool follow, int x, int y, Fringe& out) noexcept {
@@ -138,6 +146,9 @@ bool MotionEstimator::look(const Cycle& cycle, bool follow, int x, int y, Fringe
 }
 
 float MotionEstimator::mismatch(int x, int y, bool follow) const noexcept {
+    if (!stretches_.empty()) {
+        return surprise(x, y, follow);
+    }
     if (!whole_cycles_) {
         return static_cast<float>(worst_difference(x, y, follow));
     }
@@ -207,18 +218,39 @@ float MotionEstimator::measure_drift() noexcept {
 }
 
 void MotionEstimator::choose_move(const Shift& by_pattern) noexcept {
-    const float extra_rad_per_s = extra_rad_per_s_;
-    const float pattern_cost = measure_drift();
+    struct Move {
+        Shift shift;
+        double cycles_ago = 0.5;
+    };
     // The mean of a cycle is one image older than its newest.
     constexpr double kMeansAgo = 0.5 + 1.0 / kCycle;
-    const Shift by_mean = search_cycles(seconds_per_cycle_);
-    const float pattern_extra = extra_rad_per_s_;
-    extra_rad_per_s_ = extra_rad_per_s;
-    take_move(by_mean, kMeansAgo);
-    if (measure_drift() >= pattern_cost) {
-        extra_rad_per_s_ = pattern_extra;
-        take_move(by_pattern, 0.5);
+    std::array<Move, 3> moves{Move{by_pattern}, Move{search_cycles(seconds_per_cycle_), kMeansAgo}};
+    std::size_t count = 2;
+    // What is fast uncovers much, and the searches may match that: to go on as before is worth a
+    // look.
+    if (history_count_ > 0) {
+        const Shift goes_on =
+            shift_along(history_[0].velocity * static_cast<float>(seconds_per_cycle_));
+        if (goes_on.dx != by_pattern.dx || goes_on.dy != by_pattern.dy) {
+            moves[count++].shift = goes_on;
+        }
     }
+    const float extra_before = extra_rad_per_s_;
+    float best_extra = extra_before;
+    float best_cost = std::numeric_limits<float>::infinity();
+    std::size_t best = 0;
+    for (std::size_t n = 0; n < count; ++n) {
+        extra_rad_per_s_ = extra_before;
+        take_move(moves[n].shift, moves[n].cycles_ago);
+        const float cost = measure_drift();
+        if (cost < best_cost) {
+            best_cost = cost;
+            best_extra = extra_rad_per_s_;
+            best = n;
+        }
+    }
+    extra_rad_per_s_ = best_extra;
+    take_move(moves[best].shift, moves[best].cycles_ago);
 }
 
 void MotionEstimator::measure_cell_drift() noexcept {

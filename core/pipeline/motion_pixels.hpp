@@ -25,6 +25,12 @@ inline int grey_at(const Frame& frame, int x, int y) noexcept {
     return frame.format == PixelFormat::grey8 ? row[x] : mean_of(row + 3 * x);
 }
 
+// Where the fringes are, the colour that sensors see best stands for grey.
+inline int fringe_at(const Frame& frame, int x, int y) noexcept {
+    const std::uint8_t* row = frame.pixels.row(y);
+    return frame.format == PixelFormat::grey8 ? row[x] : row[3 * x + 1];
+}
+
 inline bool inside(int x, int y, Size size) noexcept {
     return x >= 0 && y >= 0 && x < size.width && y < size.height;
 }

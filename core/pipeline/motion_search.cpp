@@ -45,13 +45,7 @@ Shift MotionEstimator::search_cells(const Small& now, const Small& before,
                                           (kExpectedAdvantage / kCellPx) * looked_at);
         for (std::size_t n = 0; n < active_cells_.size() && cost < limit; n += every) {
             const auto& cell = active_cells_[n];
-            const int x = cell[0] + dx;
-            const int y = cell[1] + dy;
-            const int difference =
-                inside(x, y, before.cells.size()) && saw_cells(*before.frame, y, size_.height)
-                    ? std::abs(now.cells.at(cell[0], cell[1]) - before.cells.at(x, y))
-                    : kCostCap;
-            cost += std::min(difference, kCostCap);
+            cost += std::min(cells_differ(now, before, cell[0], cell[1], dx, dy), kCostCap);
         }
         return cost;
     };
@@ -73,9 +67,9 @@ Shift MotionEstimator::search_cells(const Small& now, const Small& before,
     return {best.dx * kCellPx, best.dy * kCellPx};
 }
 
-template <class Now, class Before, class Saw>
-Shift MotionEstimator::search_pixels(const Now& now, const Before& before, const Saw& saw_row,
-                                     Shift around, int radius, int step) const noexcept {
+template <class Differ>
+Shift MotionEstimator::search_pixels(const Differ& differ, Shift around, int radius,
+                                     int step) const noexcept {
     const auto cost_of = [&](int dx, int dy, int limit) {
         int cost = 0;
         for (const auto& cell : active_cells_) {
@@ -87,13 +81,9 @@ Shift MotionEstimator::search_pixels(const Now& now, const Before& before, const
             for (const auto& sample : kSamples) {
                 const int x = cell[0] * kCellPx + sample[0];
                 const int y = cell[1] * kCellPx + sample[1];
-                if (!inside(x, y, size_)) {
-                    continue;
+                if (inside(x, y, size_)) {
+                    cost += std::min(differ(x, y, dx, dy), kCostCap);
                 }
-                const int difference = inside(x + dx, y + dy, size_) && saw_row(y + dy)
-                                           ? std::abs(now(x, y) - before(x + dx, y + dy))
-                                           : kCostCap;
-                cost += std::min(difference, kCostCap);
             }
             if (cost >= limit) {
                 break;
@@ -117,21 +107,70 @@ Shift MotionEstimator::search_pixels(const Now& now, const Before& before, const
 
 Shift MotionEstimator::search(const Small& now, const Small& before,
                               double seconds) const noexcept {
-    const auto now_at = [&](int x, int y) { return grey_at(*now.frame, x, y); };
-    const auto before_at = [&](int x, int y) { return grey_at(*before.frame, x, y); };
-    const auto saw_row = [&](int y) { return saw(*before.frame, y); };
+    const auto differ = [&](int x, int y, int dx, int dy) {
+        return pixels_differ(now, before, x, y, dx, dy);
+    };
     Shift shift = search_cells(now, before, seconds);
-    shift = search_pixels(now_at, before_at, saw_row, shift, kCellPx - 2, 2);
-    return search_pixels(now_at, before_at, saw_row, shift, 1, 1);
+    shift = search_pixels(differ, shift, kCellPx - 2, 2);
+    return search_pixels(differ, shift, 1, 1);
 }
 
 Shift MotionEstimator::search_cycles(double seconds) const noexcept {
-    const auto now_at = [&](int x, int y) { return mean_at(cycles_[0], x, y); };
-    const auto before_at = [&](int x, int y) { return mean_at(cycles_[1], x, y); };
-    const auto saw_row = [](int) { return true; };
+    const auto differ = [&](int x, int y, int dx, int dy) {
+        return inside(x + dx, y + dy, size_)
+                   ? std::abs(mean_at(cycles_[0], x, y) - mean_at(cycles_[1], x + dx, y + dy))
+                   : kCostCap;
+    };
     Shift shift = search_cells(mean_cells_[0], mean_cells_[1], seconds);
-    shift = search_pixels(now_at, before_at, saw_row, shift, kCellPx - 2, 2);
-    return search_pixels(now_at, before_at, saw_row, shift, 1, 1);
+    shift = search_pixels(differ, shift, kCellPx - 2, 2);
+    return search_pixels(differ, shift, 1, 1);
+}
+
+int MotionEstimator::cells_differ(const Small& now, const Small& before, int cx, int cy, int dx,
+                                  int dy) const noexcept {
+    const Size cells = before.cells.size();
+    if (!inside(cx + dx, cy + dy, cells)) {
+        return kCostCap;
+    }
+    const int here = now.cells.at(cx, cy);
+    const int there = before.cells.at(cx + dx, cy + dy);
+    if (saw_alike(now, before, cy + dy)) {
+        return std::abs(here - there);
+    }
+    // What moves at constant velocity was as far away again in the image before that.
+    if (&before != blend_.of || !inside(cx + 2 * dx, cy + 2 * dy, cells)) {
+        return kCostCap;
+    }
+    return blend_differs(here, there, blend_.earlier->cells.at(cx + 2 * dx, cy + 2 * dy), cy + dy,
+                         cy + 2 * dy);
+}
+
+int MotionEstimator::pixels_differ(const Small& now, const Small& before, int x, int y, int dx,
+                                   int dy) const noexcept {
+    if (!inside(x + dx, y + dy, size_)) {
+        return kCostCap;
+    }
+    const int here = grey_at(*now.frame, x, y);
+    const int there = grey_at(*before.frame, x + dx, y + dy);
+    if (before.frame->pattern == now.frame->pattern && saw(*before.frame, y + dy)) {
+        return std::abs(here - there);
+    }
+    if (&before != blend_.of || !inside(x + 2 * dx, y + 2 * dy, size_)) {
+        return kCostCap;
+    }
+    const int last = age_.height() - 1;
+    return blend_differs(here, there, grey_at(*blend_.earlier->frame, x + 2 * dx, y + 2 * dy),
+                         std::min((y + dy) / kCellPx, last),
+                         std::min((y + 2 * dy) / kCellPx, last));
+}
+
+int MotionEstimator::blend_differs(int now, int mixed, int earlier, int mixed_row,
+                                   int earlier_row) const noexcept {
+    const int share = blend_.shares[static_cast<std::size_t>(mixed_row)];
+    if (share < 0 || !saw_cells(*blend_.earlier->frame, earlier_row, size_.height)) {
+        return kCostCap;
+    }
+    return std::abs(mixed * kWhole - now * share - earlier * (kWhole - share)) / kWhole;
 }
 
 }  // namespace xtrack

@@ -110,6 +110,11 @@ TEST(BenchMotion, SaysFiguresAndReferenceAsJson) {
     EXPECT_GT(five.at("pixels"), 10'000);
     // What the project promises.
     EXPECT_LE(five.at("off_percent"), 5.0);
+    // Fast hands are no worse than the reference's, off and missing together.
+    const json& fast = grey.at("sideways")[5];
+    EXPECT_EQ(fast.at("mm_per_frame"), 17.0);
+    EXPECT_LE(fast.at("off_percent").get<double>() + fast.at("missing_percent").get<double>(),
+              36.0);
     const json& targets = motion.at("targets");
     EXPECT_EQ(targets[0].at("name"), "rgb_two_frames");
     EXPECT_TRUE(targets[0].at("reached").is_null());
