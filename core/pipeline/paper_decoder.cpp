@@ -30,11 +30,13 @@ Pinhole nominal_camera(Size image) {
     return camera;
 }
 
-// For periods that are one image. What is dark or clipped is masked here, by settings that change.
-Result<DepthDecoder> phase_decoder(const PatternSequence& patterns, Size image, const Rig* rig) {
+// For periods that are one image, and for steps whose motion is followed. What is dark or clipped
+// is masked here, by settings that change.
+Result<DepthDecoder> phase_decoder(const PatternSequence& patterns, Size image, const Rig* rig,
+                                   MotionHandling motion) {
     DecodeSettings settings;
     settings.order = OrderSource::none;
-    settings.motion = MotionHandling::off;
+    settings.motion = motion;
     settings.keep_maps = true;
     settings.min_modulation = 0.0;
     return DepthDecoder::create(rig != nullptr ? *rig : Rig{}, patterns, image, settings);
@@ -130,15 +132,20 @@ Result<PaperDecoder> PaperDecoder::create(const PatternSequence& patterns, Size 
                      "pattern sequence: ramps jump where they begin again, and are not unwrapped "
                      "in space; use sines"};
     }
-    std::optional<DepthDecoder> one_image;
-    if (plan->sines.back().kind != PeriodKind::steps) {
-        auto made = phase_decoder(patterns, image, rig);
+    const bool metric = rig != nullptr && rig->projector.has_value();
+    std::optional<DepthDecoder> phases;
+    const bool steps = plan->sines.back().kind == PeriodKind::steps;
+    // With a rig DepthDecoder is there for hands that move.
+    const bool followed = steps && !metric && patterns.patterns.size() == 3 &&
+                          settings.motion == MotionHandling::follow;
+    if (!steps || followed) {
+        auto made =
+            phase_decoder(patterns, image, rig, followed ? settings.motion : MotionHandling::off);
         if (!made) {
             return made.error();
         }
-        one_image = *std::move(made);
+        phases = *std::move(made);
     }
-    const bool metric = rig != nullptr && rig->projector.has_value();
     if (metric && rig->projector->size != patterns.projector_size) {
         return bad("projector_size of the rig and of the pattern sequence differ");
     }
@@ -168,7 +175,7 @@ Result<PaperDecoder> PaperDecoder::create(const PatternSequence& patterns, Size 
                                            rig != nullptr ? rig->camera : nominal_camera(image));
         impl->carrier_falls =
             impl->geometry && impl->plan.carrier() && falls(*impl->geometry, patterns.axis, image);
-        impl->one_image = std::move(one_image);
+        impl->phases = std::move(phases);
         if (settings.motion != MotionHandling::off) {
             impl->scene.emplace(image);
         }
@@ -201,14 +208,15 @@ DecodeStatus PaperDecoder::Impl::push(const FramePtr& frame) noexcept {
     last_stamp = frame->stamp;
     constexpr DecodeStatus kMore{DecodeState::need_more, RejectReason::none};
     if (used[static_cast<std::size_t>(frame->pattern)] == 0) {
-        if (one_image) {
-            (void)one_image->push(frame);
+        if (phases) {
+            (void)phases->push(frame);
         }
         return kMore;
     }
-    if (one_image) {
-        const DecodeStatus status = one_image->push(frame);
-        if (status.state != DecodeState::depth_ready) {
+    if (phases) {
+        const DecodeStatus status = phases->push(frame);
+        phase_ready = status.state == DecodeState::depth_ready;
+        if (!phase_ready && period->kind != PeriodKind::steps) {
             return status;
         }
     }
@@ -276,8 +284,8 @@ void PaperDecoder::forget_background() noexcept {
 }
 
 void PaperDecoder::reset() noexcept {
-    if (impl_->one_image) {
-        impl_->one_image->reset();
+    if (impl_->phases) {
+        impl_->phases->reset();
     }
     impl_->window.clear();
     impl_->shown.clear();

@@ -29,6 +29,7 @@ struct PaperDecoder::Impl {
     /// Everything, from the images in `shown`.
     void decode() noexcept;
     void decode_phase() noexcept;
+    [[nodiscard]] bool takes_phase() const noexcept;
     void take_phase() noexcept;
     void decode_phase_rows(int begin, int end) noexcept;
     const std::uint8_t* grey_row(const Frame& frame, int y, std::size_t buffer) noexcept;
@@ -63,8 +64,10 @@ struct PaperDecoder::Impl {
     std::optional<Stamp> last_stamp;
     bool decoded = false;
 
-    /// Of periods that are one image, in colours or in space; steps are decoded here.
-    std::optional<DepthDecoder> one_image;
+    /// Of periods that are one image, in colours or in space, and of steps whose motion is
+    /// followed; other steps are decoded here.
+    std::optional<DepthDecoder> phases;
+    bool phase_ready = false;    // of `phases`, for the last frame
     bool carrier_falls = false;  // the phase of a carrier falls with the pixel's index
     /// Where what moves is told from what stands still.
     std::optional<StillScene> scene;

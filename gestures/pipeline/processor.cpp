@@ -167,6 +167,9 @@ Result<void> Processor::track(const DepthFrame& depth, PipelineView& view) {
     if (relative_ && relative_->update(depth, paper_->component(), surfaces(), is_followed())) {
         tracker_->reset();  // it is of another size now, and so is all that it knows
     }
+    if (relative_ && !relative_->has_scale()) {
+        return {};  // a hand that is there when it gets one was there from the start
+    }
     camera_hands_ = tracker_->track(relative_ ? relative_->depth() : depth);
     camera_hands_.metric = metric();
     view.camera_hands = &camera_hands_;

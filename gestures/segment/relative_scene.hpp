@@ -41,6 +41,7 @@ class RelativeScene {
     bool update(const DepthFrame& relative, const Image<std::uint16_t>& component, int moving_ids,
                 bool followed);
 
+    [[nodiscard]] bool has_scale() const noexcept { return inverse_background_ > 0.0; }
     /// What stands out from the background, in nominal mm, 0 elsewhere; all 0 while nothing has
     /// stood out yet. Valid until the next update().
     [[nodiscard]] const DepthFrame& depth() const noexcept { return depth_; }
