@@ -29,7 +29,7 @@ void add_replay(CLI::App& app, int& exit_status) {
             exit_status = usage(set.error());
             return;
         }
-        choose_mode(*stream, options);
+        choose_decoding(*stream, options);
         auto session = Session::open(*folder, options);
         if (!session) {
             exit_status = fail(session.error());

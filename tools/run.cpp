@@ -90,7 +90,7 @@ void add_run(CLI::App& app, int& exit_status) {
             exit_status = usage(set.error());
             return;
         }
-        choose_mode(run->stream, options);
+        choose_decoding(run->stream, options);
         auto session = open(*run, options);
         if (session) {
             if (const auto possible = check_metric(*session, run->stream); !possible) {

@@ -96,6 +96,8 @@ void add_stream_options(CLI::App& command, StreamOptions& options) {
             "Unwrap fringes in space, as recordings without rig.yaml always are: default (every "
             "image, with those before it) or burst (whole sets of new images)")
         ->check(CLI::IsMember({"default", "burst"}));
+    command.add_flag("--without-rig", options.without_rig,
+                     "Fringes: as if there were no rig.yaml; depth is relative");
     command.add_flag("--json", options.json, "Events as jsonl, and --stats as JSON");
 }
 
@@ -124,7 +126,11 @@ Result<void> choose_gestures(const std::optional<std::string>& list, GestureSett
     return {};
 }
 
-void choose_mode(const StreamOptions& stream, SessionOptions& options) {
+void choose_decoding(const StreamOptions& stream, SessionOptions& options) {
+    options.use_rig = !stream.without_rig;
+    if (stream.without_rig && !stream.gestures) {
+        options.gestures.pinch = false;
+    }
     if (stream.mode) {
         options.method = DecodeMethod::paper;
         options.paper.mode = *stream.mode;

@@ -23,6 +23,7 @@ struct StreamOptions {
     bool statistics = false;
     bool json = false;
     std::optional<CaptureMode> mode;  ///< wanted: fringes are unwrapped in space
+    bool without_rig = false;
 };
 
 void add_stream_options(CLI::App& command, StreamOptions& options);
@@ -32,8 +33,8 @@ void add_stream_options(CLI::App& command, StreamOptions& options);
 [[nodiscard]] Result<void> choose_gestures(const std::optional<std::string>& list,
                                            GestureSettings& settings);
 
-/// The choice of `--mode`, if one was made.
-void choose_mode(const StreamOptions& stream, SessionOptions& options);
+/// What `--mode` and `--without-rig` ask for, if they do.
+void choose_decoding(const StreamOptions& stream, SessionOptions& options);
 
 /// What a source without a calibration allows: nothing that compares what is smaller than a hand.
 /// @errors unsupported: such a gesture was asked for

@@ -29,6 +29,11 @@ bool never_changes(const PatternSequence& patterns) { return patterns.patterns.s
 Result<Processor> Processor::for_frames(const Rig& rig, const PatternSequence& patterns,
                                         const SessionOptions& options) {
     const bool has_rig = rig.projector.has_value();
+    if (has_rig && !options.use_rig) {
+        Rig none;
+        none.camera.size = rig.camera.size;
+        return for_frames(none, patterns, options);
+    }
     if (options.method == DecodeMethod::paper ||
         (options.method == DecodeMethod::automatic && !has_rig)) {
         return for_paper(rig, patterns, options);

@@ -20,9 +20,12 @@ class Outbox {
     static constexpr std::size_t kCapacity = 64;
 
     void clear() noexcept { count_ = 0; }
+    /// Of the hands that the next events are made from: HandFrame::metric.
+    void set_metric(bool metric) noexcept { metric_ = metric; }
     void add(const GestureEvent& event) noexcept {
         if (count_ < kCapacity) {
-            events_[count_++] = event;
+            events_[count_] = event;
+            events_[count_++].metric = metric_;
         }
     }
     [[nodiscard]] std::span<const GestureEvent> all() const noexcept {
@@ -32,6 +35,7 @@ class Outbox {
  private:
     std::array<GestureEvent, kCapacity> events_{};
     std::size_t count_ = 0;
+    bool metric_ = true;
 };
 
 /// The one place that every transition and every refusal of every machine goes through.

@@ -141,6 +141,7 @@ std::string to_json(const GestureEvent& e) {
     append(out, e.confidence, kShareDigits);
     out += R"(,"cancel_reason":)";
     append_quoted_or_null(out, e.cancel_reason != CancelReason::none, to_string(e.cancel_reason));
+    out += e.metric ? R"(,"metric":true)" : R"(,"metric":false)";
     out += '}';
     return out;
 }

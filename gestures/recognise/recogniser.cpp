@@ -216,6 +216,7 @@ Result<GestureRecogniser> GestureRecogniser::create(const GestureSettings& setti
 std::span<const GestureEvent> GestureRecogniser::push(const HandFrame& frame) {
     Impl& m = *impl_;
     m.out.clear();
+    m.out.set_metric(frame.metric);
     const Stamp now = frame.stamp;
     m.status = frame.coordinates != CoordinateFrame::interaction ? RecogniseStatus::wrong_frame
                : m.started && now < m.last_stamp                 ? RecogniseStatus::decreasing_stamp

@@ -293,6 +293,7 @@ TEST(RoundTrip, GestureEvent) {
     EXPECT_EQ(after.progress, 10.0F);
     EXPECT_EQ(after.value, 11.0F);
     EXPECT_EQ(after.confidence, 12.0F);
+    EXPECT_FALSE(after.metric);
 }
 
 }  // namespace

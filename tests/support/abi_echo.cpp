@@ -218,6 +218,7 @@ GestureEvent echo(GestureEvent value) {
     value.progress += 1.0F;
     value.value += 1.0F;
     value.confidence += 1.0F;
+    value.metric = !value.metric;
     return value;
 }
 

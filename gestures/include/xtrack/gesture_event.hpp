@@ -55,6 +55,7 @@ struct GestureEvent {
     float progress = 0.0F;    ///< 0..1 of what the gesture needs
     float value = 0.0F;       ///< swipe, push: mean speed mm/s; pinch: 0..1; wave: turns
     float confidence = 0.0F;  ///< 0..1
+    bool metric = true;       ///< false: mm are nominal (Session::metric())
 };
 
 // The words that events and labels are written with. Static storage. @thread any

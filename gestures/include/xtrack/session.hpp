@@ -46,6 +46,8 @@ enum class DecodeMethod {
 struct SessionOptions {
     Pace pace = Pace::replay;
     DecodeMethod method = DecodeMethod::automatic;
+    /// False: fringes are decoded as if the source had no calibration.
+    bool use_rig = true;
     DecodeSettings decode;  ///< of DecodeMethod::pattern
     PaperSettings paper;    ///< of DecodeMethod::paper
     TrackerSettings tracker;

@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <iostream>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <xtrack/labels.hpp>
+#include <xtrack/method.hpp>
 #include <xtrack/recording.hpp>
 #include <xtrack/scoring.hpp>
 #include <xtrack/session.hpp>
@@ -128,6 +130,67 @@ TEST(Recordings, ASimulatedPersonIsUnderstood) {
     EXPECT_EQ(scorer.all().correct, 7);
     EXPECT_EQ(scorer.all().false_events(), 0);
 }
+
+/// A person before a wall whom fringes show, and nobody has calibrated anything.
+struct Uncalibrated {
+    const char* preset;
+    const char* method;  ///< null: three steps of 128 px
+    int found;           ///< of four
+};
+class WithoutARig : public testing::TestWithParam<Uncalibrated> {};
+
+TEST_P(WithoutARig, SwipesPushesAndWavesAreFound) {
+    auto settings = *SimSettings::preset(GetParam().preset);
+    if (GetParam().method != nullptr) {
+        settings.camera.colour = settings.camera.chroma_422 = true;
+        settings.patterns =
+            *method_sequence(*method_of(GetParam().method), settings.rig, settings.patterns.axis);
+    } else {
+        settings.patterns =
+            three_step_sequence(settings.patterns.axis, settings.rig.projector->size, 128.0);
+    }
+    settings.script = {{SimAction::enter, SimHand::right, 0.6}, {SimAction::idle}};
+    for (const SimAction action :
+         {SimAction::swipe_left, SimAction::push, SimAction::wave, SimAction::swipe_right}) {
+        settings.script.push_back({action});
+    }
+    auto rig = SimulatedRig::create(settings);
+    ASSERT_TRUE(rig) << rig.error().message;
+    std::vector<GestureLabel> labels;
+    for (const SimLabel& label : (*rig)->labels()) {
+        labels.push_back({label.gesture, Chirality::right, label.start, label.end, label.commit});
+    }
+    const Duration length = (*rig)->duration();
+    SessionOptions options;
+    options.use_rig = false;
+    options.gestures.wave = true;
+    options.gestures.pinch = false;
+    auto session = Session::create(std::unique_ptr<FrameSource>(std::move(*rig)), options);
+    ASSERT_TRUE(session) << session.error().message;
+    EXPECT_FALSE(session->metric());
+    std::vector<GestureEvent> events;
+    session->subscribe([&](const GestureEvent& event) {
+        EXPECT_FALSE(event.metric);
+        events.push_back(event);
+    });
+    ASSERT_TRUE(session->run());
+    GestureScorer scorer(options.gestures);
+    scorer.add(events, labels, length);
+    std::cout << GetParam().preset << ": " << scorer.all().correct << " of "
+              << scorer.all().labelled << " found, " << scorer.all().false_events()
+              << " invented\n";
+    EXPECT_EQ(scorer.all().labelled, 4);
+    EXPECT_GE(scorer.all().correct, GetParam().found);
+    EXPECT_LE(scorer.all().false_events(), 1);  // the first stroke of a wave may be a swipe
+}
+
+INSTANTIATE_TEST_SUITE_P(Simulated, WithoutARig,
+                         testing::Values(Uncalibrated{"webcam-30", "rgb-static", 4},
+                                         Uncalibrated{"ideal-60", nullptr, 4}),
+                         [](const auto& which) {
+                             return which.param.method != nullptr ? "OneColourPattern"
+                                                                  : "ThreeSteps";
+                         });
 
 /// Recordings of others, not part of the project.
 class SharedRecordings : public testing::TestWithParam<const char*> {};

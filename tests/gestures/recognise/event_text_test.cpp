@@ -33,7 +33,7 @@ constexpr const char* kSwipe =
     R"({"type":"swipe","direction":"left","phase":"end","gesture_id":7,"hand_id":3,)"
     R"("hand":"right","hand_confidence":0.900,"t_onset_us":1000000,"t_sensor_us":1233333,)"
     R"("t_emit_us":1234000,"position_mm":[-12.3,56.0,400.1],"velocity_mmps":[-512.0,0.0,3.2],)"
-    R"("progress":1.000,"value":512.500,"confidence":0.930,"cancel_reason":null})";
+    R"("progress":1.000,"value":512.500,"confidence":0.930,"cancel_reason":null,"metric":true})";
 
 TEST(EventText, IsTheDocumentedObject) { EXPECT_EQ(to_json(swipe()), kSwipe); }
 
