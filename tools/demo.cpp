@@ -34,6 +34,7 @@ constexpr const char* kPresets[] = {"ideal-60", "webcam-30"};
 struct DemoOptions {
     std::string out = "demo-out";
     std::string method;
+    bool without_rig = false;
     int seeds = 0;
     bool fast = false;
     bool json = false;
@@ -49,6 +50,7 @@ Result<TrialResult> play(const std::string& preset, const DemoOptions& demo) {
     TrialOptions options;
     options.preset = preset;
     options.method = demo.method;
+    options.use_rig = !demo.without_rig;
     options.pace = demo.fast ? Pace::replay : Pace::own_pace;
     std::optional<ContactSheet> sheet;
     std::vector<GestureEvent> fresh;  // events whose pictures are still to be taken
@@ -179,12 +181,14 @@ Result<void> check_method(const DemoOptions& demo) {
     if (demo.method.empty() || demo.method == "auto") {
         return {};
     }
+    TrialOptions options;
+    options.use_rig = !demo.without_rig;
     for (const char* preset : kPresets) {
         auto settings = SimSettings::preset(preset);
         if (!settings) {
             return settings.error();
         }
-        if (auto shown = show_method(demo.method, GestureSettings{}, *settings); !shown) {
+        if (auto shown = show_method(demo.method, gestures_of(options), *settings); !shown) {
             return Error{shown.error().code, fmt::format("{}: {}", preset, shown.error().message)};
         }
     }
@@ -206,6 +210,7 @@ Result<std::vector<Scored>> score_seeds(const DemoOptions& demo) {
                 TrialOptions options;
                 options.preset = preset;
                 options.method = demo.method;
+                options.use_rig = !demo.without_rig;
                 options.seed = ++started;
                 options.measure_depth = true;
                 running.push_back(
@@ -260,6 +265,8 @@ void add_demo(CLI::App& app, int& exit_status) {
         ->add_option("--method", demo->method,
                      "What the projector shows; auto or a name from `xtrack methods`")
         ->check(not_empty());
+    command->add_flag("--without-rig", demo->without_rig,
+                      "As if nobody had calibrated the rig: relative depth, no pinches");
     command->add_flag("--fast", demo->fast, "As fast as it goes instead of in real time");
     command
         ->add_option("--seeds", demo->seeds,

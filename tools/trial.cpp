@@ -121,6 +121,12 @@ void TrialResult::add(const TrialResult& other) {
     statistics = other.statistics;
 }
 
+GestureSettings gestures_of(const TrialOptions& options) {
+    GestureSettings gestures;
+    gestures.pinch = options.use_rig;
+    return gestures;
+}
+
 Result<TrialResult> run_trial(const TrialOptions& options, const TrialSetup& setup) {
     auto settings = SimSettings::preset(options.preset);
     if (!settings) {
@@ -130,7 +136,7 @@ Result<TrialResult> run_trial(const TrialOptions& options, const TrialSetup& set
         settings->vary(options.seed);
     }
     if (!options.method.empty()) {
-        if (auto shown = show_method(options.method, GestureSettings{}, *settings); !shown) {
+        if (auto shown = show_method(options.method, gestures_of(options), *settings); !shown) {
             return shown.error();
         }
     }
@@ -147,6 +153,8 @@ Result<TrialResult> run_trial(const TrialOptions& options, const TrialSetup& set
 
     SessionOptions session_options;
     session_options.pace = options.pace;
+    session_options.use_rig = options.use_rig;
+    session_options.gestures = gestures_of(options);
     auto session = Session::create(std::unique_ptr<FrameSource>(std::move(*rig)), session_options);
     if (!session) {
         return session.error();
@@ -154,7 +162,7 @@ Result<TrialResult> run_trial(const TrialOptions& options, const TrialSetup& set
     std::vector<GestureEvent> events;
     session->subscribe([&events](const GestureEvent& event) { events.push_back(event); });
     TruthMeter meter(sim, result);
-    if (options.measure_depth && options.pace == Pace::replay) {
+    if (options.measure_depth && session->metric() && options.pace == Pace::replay) {
         session->subscribe_pipeline([&meter](const PipelineView& view) { meter.see(view); });
     }
     if (setup) {

@@ -17,6 +17,7 @@ struct TrialOptions {
     std::string preset = "ideal-60";
     std::uint64_t seed = 0;  ///< 0: the preset's own person; else another for every number
     std::string method;      ///< of show_method(); empty: the preset's own patterns
+    bool use_rig = true;     ///< false: relative depth, no pinches
     Pace pace = Pace::replay;
     /// Compare depth and palm with the truth now and then. Only in replay: truth is rendered by the
     /// source, which is read in another thread otherwise.
@@ -37,6 +38,9 @@ struct TrialResult {
 
     void add(const TrialResult& other);
 };
+
+/// The gestures that are looked for.
+[[nodiscard]] GestureSettings gestures_of(const TrialOptions& options);
 
 /// Called before the session runs, to subscribe to it.
 using TrialSetup = std::function<void(Session&, const SimulatedRig&)>;
