@@ -34,6 +34,13 @@ constexpr double kGoesOnShare = 0.7;
 // elsewhere than it did.
 constexpr int kDoubts = 12;
 constexpr int kStrongDoubts = 2;  // where many lines say the same
+// With a rig a component's order is another than it was once so many lines have said so, in all,
+// and such a share of what was said. What was said counts less by this from image to image.
+constexpr int kConvincingLines = 24;
+constexpr double kConvincingShare = 0.6;
+constexpr double kKept = 0.8;
+constexpr int kLine = 16;                   // so that a line is not forgotten at once
+constexpr int kMostEvidence = kLine << 13;  // sums over all samples stay integers
 
 }  // namespace
 
@@ -91,7 +98,7 @@ ComponentOrders::ComponentOrders(Size image, Axis axis, const Triangulation* geo
     // Values of a component span at most the projector, and so do orders, both ways.
     const int reach = 2 * static_cast<int>(std::ceil(coded_length_px / period_px)) + 4;
     for (Votes* votes : {&home_, &possible_, &before_, &sure_before_, &bridged_, &sure_bridged_,
-                         &behind_, &goes_on_, &rough_}) {
+                         &behind_, &goes_on_, &rough_, &joined_, &heard_}) {
         votes->create(reach);
     }
     const auto samples =
@@ -106,6 +113,8 @@ ComponentOrders::ComponentOrders(Size image, Axis axis, const Triangulation* geo
     ambiguous_before_.reserve(most);
     doubts_.reserve(most);
     doubts_before_.reserve(most);
+    evidence_.reserve(most);
+    evidence_before_.reserve(most);
     if (!metric_) {
         return;
     }
@@ -132,6 +141,7 @@ void ComponentOrders::forget() noexcept {
     orders_.clear();
     ambiguous_.clear();
     doubts_.clear();
+    evidence_.clear();
     recent_.reset();
     backdrop_.reset();
     standing_out_ = 0.0;
@@ -192,6 +202,10 @@ void ComponentOrders::vote(const Input& input, const Sample& s) noexcept {
         const auto order = static_cast<int>(std::lround(before - s.value));
         before_.add(order);
         doubt_ = std::max<int>(doubt_, doubts_before_[id - 1U]);
+        const Evidence& said = evidence_before_[id - 1U];
+        for (int n = 0; metric_ && n < static_cast<int>(said.size()); ++n) {
+            heard_.add(order + n - kEvidenceReach, said[static_cast<std::size_t>(n)]);
+        }
         if (ambiguous_before_[id - 1U] == 0) {
             sure_before_.add(order);
         }
@@ -232,6 +246,11 @@ void ComponentOrders::vote_behind(const Input& input, const Sample& s) noexcept 
     if (input.known_rad.empty() || front_ == 0.0) {
         return;
     }
+    const float seen = kPerTurn * input.known_rad.at(s.x, s.y);
+    if (std::isfinite(seen)) {
+        known_off_ += seen - s.value;
+        ++known_samples_;
+    }
     const float known = known_behind(input, s);
     if (std::isfinite(known)) {
         const auto front = static_cast<float>(front_);
@@ -241,6 +260,14 @@ void ComponentOrders::vote_behind(const Input& input, const Sample& s) noexcept 
 
 bool ComponentOrders::in_front(int order) const noexcept {
     return behind_.total() == 0 || static_cast<int>(front_) * order >= nearest_known_;
+}
+
+// Of what has come to light. It lies where nothing is known, or behind what is.
+bool ComponentOrders::uncovered(int order) const noexcept {
+    const auto known = static_cast<float>(known_samples_);
+    return !metric_ || 2 * known_samples_ < static_cast<int>(samples_.size()) ||
+           static_cast<float>(front_) * (static_cast<float>(order) * known - known_off_) <=
+               kStandsOut * known;
 }
 
 bool ComponentOrders::is_possible(int order) const noexcept {
@@ -282,6 +309,7 @@ void ComponentOrders::remember(const Input& input, std::size_t index) noexcept {
 void ComponentOrders::vote_bridges(const Input& input, std::uint16_t id) noexcept {
     bridge_misses_ = 0;
     touch_misses_ = 0;
+    joint_misses_ = 0;
     for (const Bridge& bridge : bridges_) {
         const auto is_known = [&](std::uint16_t other) { return other < id || other == kStill; };
         const bool forth = bridge.to == id && is_known(bridge.from);
@@ -299,6 +327,11 @@ void ComponentOrders::vote_bridges(const Input& input, std::uint16_t id) noexcep
         if (bridge.touch) {
             goes_on_.add(order, bridge.fits ? 1 : 0);
             touch_misses_ += bridge.fits ? 0 : 1;
+            continue;
+        }
+        if (bridge.joint) {
+            joined_.add(order, bridge.fits ? 1 : 0);
+            joint_misses_ += bridge.fits ? 0 : 1;
             continue;
         }
         // Nothing is behind the background: that gap is no shadow.
@@ -328,6 +361,30 @@ bool ComponentOrders::beside_largest(const Input& input, std::size_t index) cons
            b.top_px <= a.bottom_px + kBeside_px && a.top_px <= b.bottom_px + kBeside_px;
 }
 
+// What the images have said for an order, the older the less, in kLine.
+int ComponentOrders::evidence_of(int order) const noexcept {
+    const double heard = heard_.of(order) / static_cast<double>(samples_.size());
+    return static_cast<int>(kKept * heard) +
+           kLine * (rough_.of(order) + bridged_.of(order) + joined_.of(order));
+}
+
+int ComponentOrders::best_told(int least, int most) const noexcept {
+    int best = least;
+    for (int order = least; order <= most; ++order) {
+        best = is_possible(order) && evidence_of(order) > evidence_of(best) ? order : best;
+    }
+    return best;
+}
+
+bool ComponentOrders::is_convincing(int order, int least, int most) const noexcept {
+    int all = 0;
+    for (int other = least; other <= most; ++other) {
+        all += is_possible(other) ? evidence_of(other) : 0;
+    }
+    return metric_ && evidence_of(order) >= kLine * kConvincingLines &&
+           evidence_of(order) >= kConvincingShare * all;
+}
+
 void ComponentOrders::decide(const Input& input, std::size_t index) noexcept {
     const double samples = static_cast<double>(samples_.size());
     int count = 0;
@@ -348,16 +405,24 @@ void ComponentOrders::decide(const Input& input, std::size_t index) noexcept {
     const int rough = rough_.best();
     const bool roughly = rough_.of(rough) >= kRoughBridges && is_possible(rough) &&
                          rough_.of(rough) >= kRoughShare * rough_.total();
+    const int joined = joined_.best();
+    const bool joint = joined_.of(joined) >= kLeastBridges && is_possible(joined) &&
+                       joined_.of(joined) >= kGoesOnShare * (joined_.total() + joint_misses_);
     const bool doubted = tracked && ((shadow && bridged != before) || (roughly && rough != before));
     const bool strongly = roughly && rough_.of(rough) >= kStrongBridges &&
                           rough_.of(rough) >= kStrongShare * rough_.total();
     const int enough = strongly ? kStrongDoubts : kDoubts;
-    doubts_[index] = doubted && doubt_ < enough ? static_cast<std::uint8_t>(doubt_ + 1) : 0;
+    // Of depths all that was said is weighed, of heights the last word.
+    const int told = best_told(least, most);
+    const bool convinced = tracked && told != before && is_convincing(told, least, most);
+    doubts_[index] = doubted && (metric_ || doubt_ < enough)
+                         ? static_cast<std::uint8_t>(std::min(doubt_ + 1, kDoubts))
+                         : 0;
     bool sure = false;
     const bool largest = index == 0 && !moving_;
     int order = largest ? home_.best() : newcomer();
     const int on = goes_on_.best();
-    const bool goes_on = goes_on_.of(on) >= kLeastBridges &&
+    const bool goes_on = goes_on_.of(on) >= kLeastBridges && uncovered(on) &&
                          goes_on_.of(on) >= kGoesOnShare * (goes_on_.total() + touch_misses_);
     if (goes_on) {
         // What something that moved has uncovered; that lay before what is known.
@@ -369,10 +434,16 @@ void ComponentOrders::decide(const Input& input, std::size_t index) noexcept {
         sure = count == 1;
     } else if (!metric_ && largest) {
         sure = true;  // what most of the image is, is the background
+    } else if (convinced) {
+        order = told;
+        sure = true;
     } else if (shadow && doubts_[index] == 0) {
         order = bridged;
         sure = 2 * sure_bridged_.of(bridged) >= bridged_.of(bridged) &&
                (!moving_ || bridged_.of(bridged) >= kSureBridges);
+    } else if (joint && (!tracked || beside_largest(input, index))) {
+        order = joined;
+        sure = ambiguous_[0] == 0;
     } else if (beside_largest(input, index) && is_possible(newcomer())) {
         // A finger that was cut off: a fringe is longer than a hand.
         order = newcomer();
@@ -391,11 +462,17 @@ void ComponentOrders::decide(const Input& input, std::size_t index) noexcept {
     }
     orders_[index] = order;
     ambiguous_[index] = sure ? 0 : 1;
+    for (int n = 0; metric_ && n < static_cast<int>(evidence_[index].size()); ++n) {
+        evidence_[index][static_cast<std::size_t>(n)] =
+            std::min(evidence_of(order + n - kEvidenceReach), kMostEvidence);
+    }
 }
 
 void ComponentOrders::choose(const Input& input) noexcept {
     ambiguous_before_.swap(ambiguous_);
     doubts_before_.swap(doubts_);
+    evidence_before_.swap(evidence_);
+    evidence_.assign(input.components.size(), Evidence{});
     doubts_.assign(input.components.size(), 0);
     orders_.assign(input.components.size(), 0);
     ambiguous_.assign(input.components.size(), 1);
@@ -406,6 +483,8 @@ void ComponentOrders::choose(const Input& input) noexcept {
     count_shadows(input);
     for (std::size_t i = 0; i < std::min(input.components.size(), kMostComponents); ++i) {
         doubt_ = 0;
+        known_off_ = 0.0F;
+        known_samples_ = 0;
         sample(input, input.components[i]);
         for (const Sample& s : samples_) {
             vote(input, s);
@@ -418,7 +497,7 @@ void ComponentOrders::choose(const Input& input) noexcept {
         decide(input, i);
         remember(input, i);
         for (Votes* votes : {&home_, &possible_, &before_, &sure_before_, &bridged_, &sure_bridged_,
-                             &behind_, &goes_on_, &rough_}) {
+                             &behind_, &goes_on_, &rough_, &joined_, &heard_}) {
             votes->clear();
         }
         for (const Sample& s : samples_) {
