@@ -34,58 +34,8 @@ constexpr double kGoesOnShare = 0.7;
 // elsewhere than it did.
 constexpr int kDoubts = 12;
 constexpr int kStrongDoubts = 2;  // where many lines say the same
-// With a rig a component's order is another than it was once so many lines have said so, in all,
-// and such a share of what was said. What was said counts less by this from image to image.
-constexpr int kConvincingLines = 24;
-constexpr double kConvincingShare = 0.6;
-constexpr double kKept = 0.8;
-constexpr int kLine = 16;                   // so that a line is not forgotten at once
-constexpr int kMostEvidence = kLine << 13;  // sums over all samples stay integers
 
 }  // namespace
-
-void ComponentOrders::Votes::add(int order, int count) noexcept {
-    if (order < -reach_ || order > reach_) {
-        return;
-    }
-    counts_[static_cast<std::size_t>(order + reach_)] += count;
-    const bool first = low_ > high_;
-    low_ = first ? order : std::min(low_, order);
-    high_ = first ? order : std::max(high_, order);
-    total_ += count;
-}
-
-void ComponentOrders::Votes::clear() noexcept {
-    for (int order = low_; order <= high_; ++order) {
-        counts_[static_cast<std::size_t>(order + reach_)] = 0;
-    }
-    low_ = 0;
-    high_ = -1;
-    total_ = 0;
-}
-
-int ComponentOrders::Votes::of(int order) const noexcept {
-    return order < low_ || order > high_ ? 0 : counts_[static_cast<std::size_t>(order + reach_)];
-}
-
-int ComponentOrders::Votes::best() const noexcept {
-    int found = low_;
-    for (int order = low_; order <= high_; ++order) {
-        found = of(order) > of(found) ? order : found;
-    }
-    return found;
-}
-
-int ComponentOrders::Votes::reached(double share) const noexcept {
-    int sum = 0;
-    for (int order = low_; order <= high_; ++order) {
-        sum += of(order);
-        if (sum >= share * total_) {
-            return order;
-        }
-    }
-    return low_;
-}
 
 ComponentOrders::ComponentOrders(Size image, Axis axis, const Triangulation* geometry,
                                  double period_px, int coded_length_px, double most_height_px)
@@ -202,10 +152,7 @@ void ComponentOrders::vote(const Input& input, const Sample& s) noexcept {
         const auto order = static_cast<int>(std::lround(before - s.value));
         before_.add(order);
         doubt_ = std::max<int>(doubt_, doubts_before_[id - 1U]);
-        const Evidence& said = evidence_before_[id - 1U];
-        for (int n = 0; metric_ && n < static_cast<int>(said.size()); ++n) {
-            heard_.add(order + n - kEvidenceReach, said[static_cast<std::size_t>(n)]);
-        }
+        hear(id, order);
         if (ambiguous_before_[id - 1U] == 0) {
             sure_before_.add(order);
         }
@@ -361,30 +308,6 @@ bool ComponentOrders::beside_largest(const Input& input, std::size_t index) cons
            b.top_px <= a.bottom_px + kBeside_px && a.top_px <= b.bottom_px + kBeside_px;
 }
 
-// What the images have said for an order, the older the less, in kLine.
-int ComponentOrders::evidence_of(int order) const noexcept {
-    const double heard = heard_.of(order) / static_cast<double>(samples_.size());
-    return static_cast<int>(kKept * heard) +
-           kLine * (rough_.of(order) + bridged_.of(order) + joined_.of(order));
-}
-
-int ComponentOrders::best_told(int least, int most) const noexcept {
-    int best = least;
-    for (int order = least; order <= most; ++order) {
-        best = is_possible(order) && evidence_of(order) > evidence_of(best) ? order : best;
-    }
-    return best;
-}
-
-bool ComponentOrders::is_convincing(int order, int least, int most) const noexcept {
-    int all = 0;
-    for (int other = least; other <= most; ++other) {
-        all += is_possible(other) ? evidence_of(other) : 0;
-    }
-    return metric_ && evidence_of(order) >= kLine * kConvincingLines &&
-           evidence_of(order) >= kConvincingShare * all;
-}
-
 void ComponentOrders::decide(const Input& input, std::size_t index) noexcept {
     const double samples = static_cast<double>(samples_.size());
     int count = 0;
@@ -462,10 +385,7 @@ void ComponentOrders::decide(const Input& input, std::size_t index) noexcept {
     }
     orders_[index] = order;
     ambiguous_[index] = sure ? 0 : 1;
-    for (int n = 0; metric_ && n < static_cast<int>(evidence_[index].size()); ++n) {
-        evidence_[index][static_cast<std::size_t>(n)] =
-            std::min(evidence_of(order + n - kEvidenceReach), kMostEvidence);
-    }
+    keep_evidence(index);
 }
 
 void ComponentOrders::choose(const Input& input) noexcept {

@@ -165,6 +165,9 @@ class ComponentOrders {
     [[nodiscard]] float known_behind(const Input& input, const Sample& sample) const noexcept;
     void vote_bridges(const Input& input, std::uint16_t id) noexcept;
     [[nodiscard]] bool beside_largest(const Input& input, std::size_t index) const noexcept;
+    // component_evidence.cpp
+    void hear(std::uint16_t id_before, int order) noexcept;
+    void keep_evidence(std::size_t index) noexcept;
     [[nodiscard]] int evidence_of(int order) const noexcept;
     [[nodiscard]] int best_told(int least, int most) const noexcept;
     [[nodiscard]] bool is_convincing(int order, int least, int most) const noexcept;
