@@ -364,7 +364,7 @@ void ComponentOrders::decide(const Input& input, std::size_t index) noexcept {
         order = bridged;
         sure = 2 * sure_bridged_.of(bridged) >= bridged_.of(bridged) &&
                (!moving_ || bridged_.of(bridged) >= kSureBridges);
-    } else if (joint && (!tracked || beside_largest(input, index))) {
+    } else if (joint && !tracked) {
         order = joined;
         sure = ambiguous_[0] == 0;
     } else if (beside_largest(input, index) && is_possible(newcomer())) {
