@@ -20,6 +20,11 @@ constexpr float kBridgeFit = 0.12F;
 // A surface goes on where it touches another without a shadow if its fringe does, and its light is
 // the same but for this factor.
 constexpr float kAlike = 1.2F;
+// What was cut in two, where its light changes or where it happens to look as what stands still
+// behind it did: how wide the cut is at most, px, and of how many pixels the smaller part is.
+constexpr int kMostCut_px = 40;
+constexpr float kUneven = 0.1F;  // turns
+constexpr int kLeastPart = 200;
 
 }  // namespace
 
@@ -31,12 +36,13 @@ bool ComponentOrders::Line::seen(int i) const noexcept {
     return std::isfinite(phase_rad[i * next]);
 }
 
-ComponentOrders::Line ComponentOrders::line_of(const Input& input, int number) const noexcept {
+ComponentOrders::Line ComponentOrders::line_of(const Input& input, int number,
+                                               bool along_x) const noexcept {
     const auto begin = [&](const ImageView<const float>& image) {
-        return image.empty() ? nullptr : along_x_ ? image.row(number) : image.data + number;
+        return image.empty() ? nullptr : along_x ? image.row(number) : image.data + number;
     };
     const auto step = [&](const ImageView<const float>& image) {
-        return along_x_ ? std::ptrdiff_t{1} : image.stride;
+        return along_x ? std::ptrdiff_t{1} : image.stride;
     };
     const ImageView<const float>& all = input.all_rad.empty() ? input.phase_rad : input.all_rad;
     return {begin(all),
@@ -46,14 +52,15 @@ ComponentOrders::Line ComponentOrders::line_of(const Input& input, int number) c
             step(input.still_rad),
             step(input.modulation),
             number,
-            along_x_ ? size_.width : size_.height};
+            along_x ? size_.width : size_.height,
+            along_x};
 }
 
 float ComponentOrders::edge(const Input& input, const Line& line, int border, int away,
                             std::uint16_t& id) const noexcept {
     const auto raw_at = [&](int i, std::uint16_t& of) {
-        const int x = along_x_ ? i : line.number;
-        const int y = along_x_ ? line.number : i;
+        const int x = line.x(i);
+        const int y = line.y(i);
         const float taken_off =
             input.reference_rad.empty() ? 0.0F : kPerTurn * input.reference_rad.at(x, y);
         if (line.stands(i)) {
@@ -96,17 +103,14 @@ void ComponentOrders::add_bridge(const Input& input, const Line& line, int from,
         bridge.fits = bridge.fits && a < kAlike * b && b < kAlike * a;
     }
     if (!input.reference_rad.empty()) {
-        const auto taken_off = [&](int i) {
-            return along_x_ ? input.reference_rad.at(i, line.number)
-                            : input.reference_rad.at(line.number, i);
-        };
+        const auto taken_off = [&](int i) { return input.reference_rad.at(line.x(i), line.y(i)); };
         bridge.rise = kPerTurn * (taken_off(to) - taken_off(from));
     }
     bridges_.push_back(bridge);
 }
 
 void ComponentOrders::bridge_line(const Input& input, int number) noexcept {
-    const Line line = line_of(input, number);
+    const Line line = line_of(input, number, along_x_);
     constexpr int kMargin = kMostClear_px + kSlope_px;
     int last_seen = -1;
     for (int i = 0; i < line.length; ++i) {
@@ -126,6 +130,58 @@ void ComponentOrders::bridge_line(const Input& input, int number) noexcept {
     }
 }
 
+// Parts of one thing: from one to the other the phase goes on evenly. Between two things, or a
+// thing and what is seen beside it, there are steps.
+void ComponentOrders::add_joint(const Input& input, const Line& line, int from, int to) noexcept {
+    Bridge bridge;
+    bridge.joint = true;
+    const float begin = value_at(input, line.x(from), line.y(from), bridge.from);
+    const float end = value_at(input, line.x(to), line.y(to), bridge.to);
+    const auto step = [&](int i) {
+        const float turns =
+            kPerTurn * (line.phase_rad[(i + 1) * line.next] - line.phase_rad[i * line.next]);
+        return turns - std::nearbyint(turns);
+    };
+    float rise = 0.0F;
+    for (int i = from; i < to; ++i) {
+        rise += step(i);
+    }
+    if (!std::isfinite(rise)) {
+        return;  // a shadow
+    }
+    bridge.orders = static_cast<std::int32_t>(std::nearbyint(begin + rise - end));
+    bridge.fits = true;
+    float risen = 0.0F;
+    for (int i = from; i < to && bridge.fits; ++i) {
+        risen += step(i);
+        const float even = rise * static_cast<float>(i + 1 - from) / static_cast<float>(to - from);
+        bridge.fits = std::fabs(risen - even) <= kUneven;
+    }
+    bridges_.push_back(bridge);
+}
+
+void ComponentOrders::join_line(const Input& input, int number, bool along_x) noexcept {
+    const Line line = line_of(input, number, along_x);
+    constexpr int kMargin = kMostClear_px + kSlope_px;
+    int last = -1;
+    std::uint16_t last_id = 0;
+    for (int i = kMargin; i + kMargin < line.length && bridges_.size() < kMostBridges; ++i) {
+        if (!line.seen(i) || line.stands(i)) {
+            continue;
+        }
+        const std::uint16_t id = input.unwrapper.place(line.x(i), line.y(i)).component;
+        if (id == 0 || input.components[id - 1U].pixels < kLeastPart) {
+            continue;
+        }
+        const int cut_px = i - last - 1;
+        if (last_id != 0 && id != last_id && cut_px <= kMostCut_px) {
+            add_joint(input, line, last, i);
+        }
+        last = i;
+        last_id = id;
+    }
+}
+
 void ComponentOrders::find_bridges(const Input& input) noexcept {
     bridges_.clear();
     if (input.components.size() + (input.still_pixels > 0 ? 1 : 0) < 2) {
@@ -134,6 +190,15 @@ void ComponentOrders::find_bridges(const Input& input) noexcept {
     const int lines = along_x_ ? size_.height : size_.width;
     for (int line = kGrid_px / 2; line < lines; line += kGrid_px) {
         bridge_line(input, line);
+    }
+    if (!metric_ || !moving_) {
+        return;
+    }
+    for (int y = kGrid_px / 2; y < size_.height; y += kGrid_px) {
+        join_line(input, y, true);
+    }
+    for (int x = kGrid_px / 2; x < size_.width; x += kGrid_px) {
+        join_line(input, x, false);
     }
 }
 
@@ -147,7 +212,7 @@ void ComponentOrders::count_shadows(const Input& input) noexcept {
                input.components[id - 1U].pixels >= kBridgeablePixels;
     };
     for (const Bridge& bridge : bridges_) {
-        if (!bridge.fits || bridge.touch || bridge.rise == 0.0F) {
+        if (!bridge.fits || bridge.touch || bridge.joint || bridge.rise == 0.0F) {
             continue;
         }
         const int way = bridge.rise > 0.0F ? 1 : -1;

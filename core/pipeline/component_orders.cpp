@@ -37,49 +37,6 @@ constexpr int kStrongDoubts = 2;  // where many lines say the same
 
 }  // namespace
 
-void ComponentOrders::Votes::add(int order, int count) noexcept {
-    if (order < -reach_ || order > reach_) {
-        return;
-    }
-    counts_[static_cast<std::size_t>(order + reach_)] += count;
-    const bool first = low_ > high_;
-    low_ = first ? order : std::min(low_, order);
-    high_ = first ? order : std::max(high_, order);
-    total_ += count;
-}
-
-void ComponentOrders::Votes::clear() noexcept {
-    for (int order = low_; order <= high_; ++order) {
-        counts_[static_cast<std::size_t>(order + reach_)] = 0;
-    }
-    low_ = 0;
-    high_ = -1;
-    total_ = 0;
-}
-
-int ComponentOrders::Votes::of(int order) const noexcept {
-    return order < low_ || order > high_ ? 0 : counts_[static_cast<std::size_t>(order + reach_)];
-}
-
-int ComponentOrders::Votes::best() const noexcept {
-    int found = low_;
-    for (int order = low_; order <= high_; ++order) {
-        found = of(order) > of(found) ? order : found;
-    }
-    return found;
-}
-
-int ComponentOrders::Votes::reached(double share) const noexcept {
-    int sum = 0;
-    for (int order = low_; order <= high_; ++order) {
-        sum += of(order);
-        if (sum >= share * total_) {
-            return order;
-        }
-    }
-    return low_;
-}
-
 ComponentOrders::ComponentOrders(Size image, Axis axis, const Triangulation* geometry,
                                  double period_px, int coded_length_px, double most_height_px)
     : size_(image),
@@ -91,7 +48,7 @@ ComponentOrders::ComponentOrders(Size image, Axis axis, const Triangulation* geo
     // Values of a component span at most the projector, and so do orders, both ways.
     const int reach = 2 * static_cast<int>(std::ceil(coded_length_px / period_px)) + 4;
     for (Votes* votes : {&home_, &possible_, &before_, &sure_before_, &bridged_, &sure_bridged_,
-                         &behind_, &goes_on_, &rough_}) {
+                         &behind_, &goes_on_, &rough_, &joined_, &heard_}) {
         votes->create(reach);
     }
     const auto samples =
@@ -106,6 +63,8 @@ ComponentOrders::ComponentOrders(Size image, Axis axis, const Triangulation* geo
     ambiguous_before_.reserve(most);
     doubts_.reserve(most);
     doubts_before_.reserve(most);
+    evidence_.reserve(most);
+    evidence_before_.reserve(most);
     if (!metric_) {
         return;
     }
@@ -132,6 +91,7 @@ void ComponentOrders::forget() noexcept {
     orders_.clear();
     ambiguous_.clear();
     doubts_.clear();
+    evidence_.clear();
     recent_.reset();
     backdrop_.reset();
     standing_out_ = 0.0;
@@ -192,6 +152,7 @@ void ComponentOrders::vote(const Input& input, const Sample& s) noexcept {
         const auto order = static_cast<int>(std::lround(before - s.value));
         before_.add(order);
         doubt_ = std::max<int>(doubt_, doubts_before_[id - 1U]);
+        hear(id, order);
         if (ambiguous_before_[id - 1U] == 0) {
             sure_before_.add(order);
         }
@@ -232,6 +193,11 @@ void ComponentOrders::vote_behind(const Input& input, const Sample& s) noexcept 
     if (input.known_rad.empty() || front_ == 0.0) {
         return;
     }
+    const float seen = kPerTurn * input.known_rad.at(s.x, s.y);
+    if (std::isfinite(seen)) {
+        known_off_ += seen - s.value;
+        ++known_samples_;
+    }
     const float known = known_behind(input, s);
     if (std::isfinite(known)) {
         const auto front = static_cast<float>(front_);
@@ -241,6 +207,14 @@ void ComponentOrders::vote_behind(const Input& input, const Sample& s) noexcept 
 
 bool ComponentOrders::in_front(int order) const noexcept {
     return behind_.total() == 0 || static_cast<int>(front_) * order >= nearest_known_;
+}
+
+// Of what has come to light. It lies where nothing is known, or behind what is.
+bool ComponentOrders::uncovered(int order) const noexcept {
+    const auto known = static_cast<float>(known_samples_);
+    return !metric_ || 2 * known_samples_ < static_cast<int>(samples_.size()) ||
+           static_cast<float>(front_) * (static_cast<float>(order) * known - known_off_) <=
+               kStandsOut * known;
 }
 
 bool ComponentOrders::is_possible(int order) const noexcept {
@@ -282,6 +256,7 @@ void ComponentOrders::remember(const Input& input, std::size_t index) noexcept {
 void ComponentOrders::vote_bridges(const Input& input, std::uint16_t id) noexcept {
     bridge_misses_ = 0;
     touch_misses_ = 0;
+    joint_misses_ = 0;
     for (const Bridge& bridge : bridges_) {
         const auto is_known = [&](std::uint16_t other) { return other < id || other == kStill; };
         const bool forth = bridge.to == id && is_known(bridge.from);
@@ -299,6 +274,11 @@ void ComponentOrders::vote_bridges(const Input& input, std::uint16_t id) noexcep
         if (bridge.touch) {
             goes_on_.add(order, bridge.fits ? 1 : 0);
             touch_misses_ += bridge.fits ? 0 : 1;
+            continue;
+        }
+        if (bridge.joint) {
+            joined_.add(order, bridge.fits ? 1 : 0);
+            joint_misses_ += bridge.fits ? 0 : 1;
             continue;
         }
         // Nothing is behind the background: that gap is no shadow.
@@ -348,16 +328,24 @@ void ComponentOrders::decide(const Input& input, std::size_t index) noexcept {
     const int rough = rough_.best();
     const bool roughly = rough_.of(rough) >= kRoughBridges && is_possible(rough) &&
                          rough_.of(rough) >= kRoughShare * rough_.total();
+    const int joined = joined_.best();
+    const bool joint = joined_.of(joined) >= kLeastBridges && is_possible(joined) &&
+                       joined_.of(joined) >= kGoesOnShare * (joined_.total() + joint_misses_);
     const bool doubted = tracked && ((shadow && bridged != before) || (roughly && rough != before));
     const bool strongly = roughly && rough_.of(rough) >= kStrongBridges &&
                           rough_.of(rough) >= kStrongShare * rough_.total();
     const int enough = strongly ? kStrongDoubts : kDoubts;
-    doubts_[index] = doubted && doubt_ < enough ? static_cast<std::uint8_t>(doubt_ + 1) : 0;
+    // Of depths all that was said is weighed, of heights the last word.
+    const int told = best_told(least, most);
+    const bool convinced = tracked && told != before && is_convincing(told, least, most);
+    doubts_[index] = doubted && (metric_ || doubt_ < enough)
+                         ? static_cast<std::uint8_t>(std::min(doubt_ + 1, kDoubts))
+                         : 0;
     bool sure = false;
     const bool largest = index == 0 && !moving_;
     int order = largest ? home_.best() : newcomer();
     const int on = goes_on_.best();
-    const bool goes_on = goes_on_.of(on) >= kLeastBridges &&
+    const bool goes_on = goes_on_.of(on) >= kLeastBridges && uncovered(on) &&
                          goes_on_.of(on) >= kGoesOnShare * (goes_on_.total() + touch_misses_);
     if (goes_on) {
         // What something that moved has uncovered; that lay before what is known.
@@ -369,10 +357,16 @@ void ComponentOrders::decide(const Input& input, std::size_t index) noexcept {
         sure = count == 1;
     } else if (!metric_ && largest) {
         sure = true;  // what most of the image is, is the background
+    } else if (convinced) {
+        order = told;
+        sure = true;
     } else if (shadow && doubts_[index] == 0) {
         order = bridged;
         sure = 2 * sure_bridged_.of(bridged) >= bridged_.of(bridged) &&
                (!moving_ || bridged_.of(bridged) >= kSureBridges);
+    } else if (joint && !tracked) {
+        order = joined;
+        sure = ambiguous_[0] == 0;
     } else if (beside_largest(input, index) && is_possible(newcomer())) {
         // A finger that was cut off: a fringe is longer than a hand.
         order = newcomer();
@@ -391,11 +385,14 @@ void ComponentOrders::decide(const Input& input, std::size_t index) noexcept {
     }
     orders_[index] = order;
     ambiguous_[index] = sure ? 0 : 1;
+    keep_evidence(index);
 }
 
 void ComponentOrders::choose(const Input& input) noexcept {
     ambiguous_before_.swap(ambiguous_);
     doubts_before_.swap(doubts_);
+    evidence_before_.swap(evidence_);
+    evidence_.assign(input.components.size(), Evidence{});
     doubts_.assign(input.components.size(), 0);
     orders_.assign(input.components.size(), 0);
     ambiguous_.assign(input.components.size(), 1);
@@ -406,6 +403,8 @@ void ComponentOrders::choose(const Input& input) noexcept {
     count_shadows(input);
     for (std::size_t i = 0; i < std::min(input.components.size(), kMostComponents); ++i) {
         doubt_ = 0;
+        known_off_ = 0.0F;
+        known_samples_ = 0;
         sample(input, input.components[i]);
         for (const Sample& s : samples_) {
             vote(input, s);
@@ -418,7 +417,7 @@ void ComponentOrders::choose(const Input& input) noexcept {
         decide(input, i);
         remember(input, i);
         for (Votes* votes : {&home_, &possible_, &before_, &sure_before_, &bridged_, &sure_bridged_,
-                             &behind_, &goes_on_, &rough_}) {
+                             &behind_, &goes_on_, &rough_, &joined_, &heard_}) {
             votes->clear();
         }
         for (const Sample& s : samples_) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -109,7 +110,8 @@ class ComponentOrders {
         std::int32_t orders = 0;  ///< of `to` less that of `from`
         bool fits = false;        ///< the fringe goes on; where they touch, the light as well
         bool touch = false;
-        float rise = 0.0F;  ///< of what was taken off, from one side to the other, turns
+        bool joint = false;  ///< no shadow: a cut of a few pixels between two that move
+        float rise = 0.0F;   ///< of what was taken off, from one side to the other, turns
     };
     /// What there is on a line of pixels.
     struct Line {
@@ -121,14 +123,20 @@ class ComponentOrders {
         std::ptrdiff_t next_modulation = 0;
         int number = 0;
         int length = 0;
+        bool along_x = true;
+        [[nodiscard]] int x(int i) const noexcept { return along_x ? i : number; }
+        [[nodiscard]] int y(int i) const noexcept { return along_x ? number : i; }
         [[nodiscard]] bool stands(int i) const noexcept;
         [[nodiscard]] bool seen(int i) const noexcept;
     };
-    [[nodiscard]] Line line_of(const Input& input, int number) const noexcept;
+    [[nodiscard]] Line line_of(const Input& input, int number, bool along_x) const noexcept;
     /// The value at a border, going by what lies `away` (1 or -1) from it.
     [[nodiscard]] float edge(const Input& input, const Line& line, int border, int away,
                              std::uint16_t& id) const noexcept;
     void add_bridge(const Input& input, const Line& line, int from, int to) noexcept;
+    static constexpr int kEvidenceReach = 2;
+    /// For orders up to kEvidenceReach from a component's own.
+    using Evidence = std::array<std::int32_t, 2 * kEvidenceReach + 1>;
     struct Sample {
         int x = 0;
         int y = 0;
@@ -138,6 +146,8 @@ class ComponentOrders {
     void find_bridges(const Input& input) noexcept;
     void count_shadows(const Input& input) noexcept;
     void bridge_line(const Input& input, int line) noexcept;
+    void add_joint(const Input& input, const Line& line, int from, int to) noexcept;
+    void join_line(const Input& input, int number, bool along_x) noexcept;
     [[nodiscard]] float value_at(const Input& input, int x, int y,
                                  std::uint16_t& id) const noexcept;
     void sample(const Input& input, const PhaseComponent& component) noexcept;
@@ -146,6 +156,7 @@ class ComponentOrders {
     void vote_behind(const Input& input, const Sample& sample) noexcept;
     [[nodiscard]] bool in_front(int order) const noexcept;
     [[nodiscard]] bool is_possible(int order) const noexcept;
+    [[nodiscard]] bool uncovered(int order) const noexcept;
     /// The order of something new that nothing is known of.
     [[nodiscard]] int newcomer() const noexcept;
     void remember(const Input& input, std::size_t index) noexcept;
@@ -154,6 +165,12 @@ class ComponentOrders {
     [[nodiscard]] float known_behind(const Input& input, const Sample& sample) const noexcept;
     void vote_bridges(const Input& input, std::uint16_t id) noexcept;
     [[nodiscard]] bool beside_largest(const Input& input, std::size_t index) const noexcept;
+    // component_evidence.cpp
+    void hear(std::uint16_t id_before, int order) noexcept;
+    void keep_evidence(std::size_t index) noexcept;
+    [[nodiscard]] int evidence_of(int order) const noexcept;
+    [[nodiscard]] int best_told(int least, int most) const noexcept;
+    [[nodiscard]] bool is_convincing(int order, int least, int most) const noexcept;
     void decide(const Input& input, std::size_t index) noexcept;
 
     Size size_;
@@ -166,15 +183,19 @@ class ComponentOrders {
     std::vector<std::uint8_t> ambiguous_, ambiguous_before_;
     /// In how many images on end shadows have said otherwise.
     std::vector<std::uint8_t> doubts_, doubts_before_;
+    std::vector<Evidence> evidence_, evidence_before_;
     int doubt_ = 0;  ///< of the component at hand, a frame ago
     std::vector<Sample> samples_;
     float mean_ = 0.0F;         ///< value of the samples
     float most_height_ = 0.0F;  ///< turns
     std::vector<Bridge> bridges_;
     Votes home_, possible_, before_, sure_before_, bridged_, sure_bridged_, behind_, goes_on_,
-        rough_;
+        rough_, joined_, heard_;
     int touch_misses_ = 0;
-    double front_ = 0.0;     ///< Input::front, of depths too
+    int joint_misses_ = 0;
+    double front_ = 0.0;      ///< Input::front, of depths too
+    float known_off_ = 0.0F;  ///< sum over the samples of which something is known: known - value
+    int known_samples_ = 0;
     int nearest_known_ = 0;  ///< of the component at hand: front_ times an order must reach it
     bool moving_ = false;    ///< all components are of what moves; the rest stands still
     /// How far away the largest surface is that all is before; empty: heights are before 0, or

@@ -21,9 +21,10 @@ bench::MotionMethod method_named(std::string_view name) {
                          [&](const bench::MotionMethod& m) { return m.name == name; });
 }
 
-bench::Stroke stroke_of(const bench::MotionMethod& method, const Vec3f& velocity_mmps) {
+bench::Stroke stroke_of(const bench::MotionMethod& method, const Vec3f& velocity_mmps,
+                        std::uint64_t seed = 1) {
     return bench::simulate_stroke(bench::MotionCamera::ideal_60, method.patterns, method.colour,
-                                  velocity_mmps, 1)
+                                  velocity_mmps, seed)
         .value();
 }
 
@@ -66,6 +67,25 @@ TEST(BenchMotion, TheHandMovesSoManyMillimetresAFrame) {
     EXPECT_NEAR(last.joints_mm[0].x() + first.joints_mm[0].x(), 0.0, 30.0);
     // Three steps that are not followed go wrong then.
     EXPECT_GT(measure(stroke, method).off_percent(), 20.0);
+}
+
+// An arm goes through the depth at which it looks as the wall behind it: what is cut off by that is
+// no wall that came to light, and its turns go on from the rest of the arm.
+TEST(BenchMotion, AnArmThatCrossesTheWallsFringeKeepsItsTurns) {
+    const auto method = method_named("rgb_one_frame");
+    const auto hand = measure(stroke_of(method, {-60.0F * 33.0F, 0.0F, 0.0F}, 2), method);
+    EXPECT_GT(hand.pixels, 10'000U);
+    EXPECT_LT(hand.off_percent(), 2.0);
+    EXPECT_LT(hand.missing_percent(), 1.0);
+}
+
+// A hand that came out of the wall's fringe is a fringe off at first; a few images' shadows mend
+// it.
+TEST(BenchMotion, AWrongFringeIsMendedByWhatShadowsSay) {
+    const auto method = method_named("rgb_one_frame");
+    const auto hand = measure(stroke_of(method, {0.0F, 0.0F, -60.0F * 10.0F}, 2), method);
+    EXPECT_GT(hand.pixels, 10'000U);
+    EXPECT_LT(hand.off_percent(), 5.0);
 }
 
 TEST(BenchMotion, AStrokeWithoutAnyDepthIsMissing) {
