@@ -41,6 +41,9 @@ Result<Session> open(const RunOptions& run, SessionOptions options) {
     if (!settings) {
         return settings.error();
     }
+    if (!options.use_rig && !run.stream.gestures) {
+        options.gestures.pinch = false;  // so that a method is not refused for it
+    }
     if (run.seed != 0) {
         settings->vary(run.seed);
     }

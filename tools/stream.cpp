@@ -128,9 +128,6 @@ Result<void> choose_gestures(const std::optional<std::string>& list, GestureSett
 
 void choose_decoding(const StreamOptions& stream, SessionOptions& options) {
     options.use_rig = !stream.without_rig;
-    if (stream.without_rig && !stream.gestures) {
-        options.gestures.pinch = false;
-    }
     if (stream.mode) {
         options.method = DecodeMethod::paper;
         options.paper.mode = *stream.mode;
@@ -142,8 +139,11 @@ Result<void> check_metric(const Session& session, const StreamOptions& options) 
         options.gestures && (',' + *options.gestures + ',').find(",pinch,") != std::string::npos;
     if (!session.metric() && pinch) {
         return Error{ErrorCode::unsupported,
-                     "--gestures pinch: needs millimetres, and the source has no rig.yaml; add the "
-                     "calibration, or choose from swipe, push, wave"};
+                     options.without_rig
+                         ? "--gestures pinch: needs millimetres; leave out --without-rig, or "
+                           "choose from swipe, push, wave"
+                         : "--gestures pinch: needs millimetres, and the source has no rig.yaml; "
+                           "add the calibration, or choose from swipe, push, wave"};
     }
     return {};
 }
@@ -168,7 +168,7 @@ int play(Session& session, const StreamOptions& options, Pace pace, bool whole, 
     }
     if (!session.metric()) {
         print_error(
-            "xtrack: no rig.yaml: depth is relative; lengths are in eightieths of a palm's "
+            "xtrack: without a rig.yaml depth is relative; lengths are in eightieths of a palm's "
             "width, not in mm, and pinches are not looked for\n");
     }
     // A bar between lines of events on the same screen would help nobody.

@@ -381,7 +381,7 @@ void ComponentOrders::decide(const Input& input, std::size_t index) noexcept {
         // The same: the farthest that it can be.
         order = far_is_low_ ? least : most;
     } else if (!is_possible(order)) {
-        order = possible_.best();
+        order = metric_ ? possible_.best() : home_.best();
     }
     orders_[index] = order;
     ambiguous_[index] = sure ? 0 : 1;

@@ -90,7 +90,11 @@ void MotionEstimator::clear() noexcept {
     moving_ = false;
     held_ = false;
     whole_cycles_ = false;
-    extra_rad_per_s_ = 0.0F;
+    stretches_.clear();
+    blend_.of = blend_.earlier = nullptr;
+    velocity_ = acceleration_ = gradient_rad_ = Vec2f::Zero();
+    extra_rad_per_s_ = lag_s_ = 0.0F;
+    cell_drift_rad_.fill(0.0F);
 }
 
 void MotionEstimator::shrink(const Frame& frame, Image<std::uint8_t>& cells) const noexcept {
@@ -293,7 +297,8 @@ void MotionEstimator::update(const FrameWindow& window, const Frame& newest) noe
     if (held != held_) {
         held_ = held;
         history_count_ = 0;
-        velocity_ = Vec2f::Zero();
+        velocity_ = acceleration_ = Vec2f::Zero();
+        extra_rad_per_s_ = 0.0F;
     }
     if (cycle == nullptr) {
         return;

@@ -44,7 +44,8 @@ bool MotionEstimator::saw_alike(const Small& now, const Small& before, int cy) c
 bool MotionEstimator::comparable(const Small& now, const Small& before, int cy) const noexcept {
     return saw_cells(*now.frame, cy, size_.height) &&
            (saw_alike(now, before, cy) ||
-            (&before == blend_.of && blend_.shares[static_cast<std::size_t>(cy)] >= 0));
+            (&before == blend_.of && blend_.shares[static_cast<std::size_t>(cy)] >= 0 &&
+             saw_cells(*blend_.earlier->frame, cy, size_.height)));
 }
 
 void MotionEstimator::find_blend(const Small& now, const Small& before,
@@ -137,7 +138,10 @@ void MotionEstimator::follow_held(const Small& now, const Small* before) noexcep
                               static_cast<float>(-shift.dy) / seconds);
         }
         // Of a blend, the less of the newest pattern is in it the longer ago.
-        remember(now_ - between * (3 * kWhole * shown - 2 * shares) / (2 * kWhole * shown));
+        const double ago =
+            1.5 - static_cast<double>(shares) / (static_cast<double>(kWhole) * shown);
+        remember(now_ -
+                 Duration{static_cast<Duration::rep>(ago * static_cast<double>(between.count()))});
     }
     for (std::size_t n = 0; n < history_count_; ++n) {
         const Past& past = history_[n];
@@ -184,6 +188,9 @@ void MotionEstimator::prepare_stretches() noexcept {
 }
 
 float MotionEstimator::surprise(int x, int y, bool follow) const noexcept {
+    if (!inside(x, y, size_)) {
+        return kNoMatch;
+    }
     Fringe fringe;
     const std::size_t stretch = stretch_of_row_[static_cast<std::size_t>(y)];
     if (!look(stretches_[stretch].cycle, follow, x, y, fringe)) {

@@ -33,10 +33,11 @@ Pinhole nominal_camera(Size image) {
 // For periods that are one image, and for steps whose motion is followed. What is dark or clipped
 // is masked here, by settings that change.
 Result<DepthDecoder> phase_decoder(const PatternSequence& patterns, Size image, const Rig* rig,
-                                   MotionHandling motion) {
+                                   const PaperSettings& paper, bool followed) {
     DecodeSettings settings;
     settings.order = OrderSource::none;
-    settings.motion = motion;
+    settings.motion = followed ? paper.motion : MotionHandling::off;
+    settings.mask_saturated = paper.mask_saturated;
     settings.keep_maps = true;
     settings.min_modulation = 0.0;
     return DepthDecoder::create(rig != nullptr ? *rig : Rig{}, patterns, image, settings);
@@ -139,8 +140,7 @@ Result<PaperDecoder> PaperDecoder::create(const PatternSequence& patterns, Size 
     const bool followed = steps && !metric && patterns.patterns.size() == 3 &&
                           settings.motion == MotionHandling::follow;
     if (!steps || followed) {
-        auto made =
-            phase_decoder(patterns, image, rig, followed ? settings.motion : MotionHandling::off);
+        auto made = phase_decoder(patterns, image, rig, settings, followed);
         if (!made) {
             return made.error();
         }
@@ -213,6 +213,7 @@ DecodeStatus PaperDecoder::Impl::push(const FramePtr& frame) noexcept {
         }
         return kMore;
     }
+    bool phase_ready = false;
     if (phases) {
         const DecodeStatus status = phases->push(frame);
         phase_ready = status.state == DecodeState::depth_ready;
@@ -227,10 +228,13 @@ DecodeStatus PaperDecoder::Impl::push(const FramePtr& frame) noexcept {
         return kMore;
     }
     shown = window;
+    // A burst is of its own images, whatever was before it.
+    from_phases =
+        phase_ready && (period->kind != PeriodKind::steps || settings.mode != CaptureMode::burst);
     if (settings.mode == CaptureMode::burst) {
         window.clear();
     }
-    decode();
+    decode(true);
     learn_still();
     return {DecodeState::depth_ready, RejectReason::none};
 }
@@ -246,7 +250,7 @@ DecodeStatus PaperDecoder::decode_again() noexcept {
     if (!impl_->decoded) {
         return {DecodeState::need_more, RejectReason::none};
     }
-    impl_->decode();
+    impl_->decode(false);
     return {DecodeState::depth_ready, RejectReason::none};
 }
 
@@ -275,12 +279,7 @@ Result<void> PaperDecoder::learn_background() {
 void PaperDecoder::forget_background() noexcept {
     impl_->background_wrapped = {};
     impl_->background = {};
-    impl_->orders.forget();
-    if (impl_->scene) {
-        impl_->scene->forget();
-    }
-    impl_->standing_out = 0.0;
-    impl_->shadows = 0;
+    impl_->forget_scene();
 }
 
 void PaperDecoder::reset() noexcept {

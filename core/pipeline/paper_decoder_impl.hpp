@@ -27,9 +27,9 @@ struct PaperDecoder::Impl {
     Result<void> learn_background();
 
     /// Everything, from the images in `shown`.
-    void decode() noexcept;
+    /// @param fresh of images that no decode has seen yet: they say which way is nearer
+    void decode(bool fresh) noexcept;
     void decode_phase() noexcept;
-    [[nodiscard]] bool takes_phase() const noexcept;
     void take_phase() noexcept;
     void decode_phase_rows(int begin, int end) noexcept;
     const std::uint8_t* grey_row(const Frame& frame, int y, std::size_t buffer) noexcept;
@@ -37,12 +37,12 @@ struct PaperDecoder::Impl {
     bool subtract_background() noexcept;
     /// Solves and writes the phase as it is, and finds the plane of its largest surface.
     bool learn_plane(bool keep_seen);
-    void write_results() noexcept;
+    void write_results(bool fresh) noexcept;
     [[nodiscard]] double front_of_phase() const noexcept;
+    void forget_scene() noexcept;  ///< heights are before another background now
     /// Whether the other way is nearer than was thought.
     [[nodiscard]] bool find_front() noexcept;
     void order_scene_anew() noexcept;
-    [[nodiscard]] bool front_is_sure() const noexcept;
     void write_still_row(int y) noexcept;
     void learn_still() noexcept;
     void write_row(int y) noexcept;  ///< turns and components
@@ -67,7 +67,7 @@ struct PaperDecoder::Impl {
     /// Of periods that are one image, in colours or in space, and of steps whose motion is
     /// followed; other steps are decoded here.
     std::optional<DepthDecoder> phases;
-    bool phase_ready = false;    // of `phases`, for the last frame
+    bool from_phases = false;    // what was decoded last took its phase from there
     bool carrier_falls = false;  // the phase of a carrier falls with the pixel's index
     /// Where what moves is told from what stands still.
     std::optional<StillScene> scene;
@@ -87,6 +87,7 @@ struct PaperDecoder::Impl {
     double front = 1.0;  // -1: less phase is nearer
     // What says so, over the images.
     int shadows = 0;
+    bool front_is_sure = false;
     double standing_out = 0.0;
     DepthFrame depth;
     Image<float> points;  // 3 values a pixel

@@ -66,12 +66,6 @@ void PaperDecoder::Impl::decode_phase_rows(int begin, int end) noexcept {
     }
 }
 
-// A burst is of its own images, whatever was before it.
-bool PaperDecoder::Impl::takes_phase() const noexcept {
-    return phases && phase_ready &&
-           (period->kind != PeriodKind::steps || settings.mode != CaptureMode::burst);
-}
-
 void PaperDecoder::Impl::take_phase() noexcept {
     const PhaseMap& seen = phases->phase();
     const auto least = static_cast<float>(settings.min_modulation);
@@ -91,7 +85,7 @@ void PaperDecoder::Impl::take_phase() noexcept {
 }
 
 void PaperDecoder::Impl::decode_phase() noexcept {
-    if (takes_phase()) {
+    if (from_phases) {
         take_phase();
         return;
     }
@@ -156,10 +150,8 @@ Result<void> PaperDecoder::Impl::learn_background() {
         return Error{ErrorCode::unsupported,
                      "PaperDecoder::learn_background: the image shows no surface; show a wall"};
     }
-    orders.forget();
-    standing_out = 0.0;
-    shadows = 0;
-    decode();
+    forget_scene();
+    decode(false);
     return {};
 }
 
@@ -221,7 +213,7 @@ void PaperDecoder::Impl::write_depth_row(int y) noexcept {
     }
 }
 
-void PaperDecoder::Impl::write_results() noexcept {
+void PaperDecoder::Impl::write_results(bool fresh) noexcept {
     const ImageView<const float> all =
         geometry ? std::as_const(phase_map.phase_rad).view() : std::as_const(difference).view();
     ImageView<const float> phase = all;
@@ -238,7 +230,7 @@ void PaperDecoder::Impl::write_results() noexcept {
                                  std::as_const(background).view(),
                                  std::as_const(unwrapped_before).view(),
                                  std::as_const(component_before).view(),
-                                 front_is_sure() || standing_out != 0.0 ? front : 0.0};
+                                 front_is_sure || standing_out != 0.0 ? front : 0.0};
     if (scene) {
         input.still_rad = scene->still_rad().view();
         input.known_rad = scene->known_rad().view();
@@ -247,9 +239,9 @@ void PaperDecoder::Impl::write_results() noexcept {
         input.still_pixels = scene->still_pixels();
     }
     orders.choose(input);
-    if (!geometry && find_front()) {
+    if (!geometry && fresh && find_front()) {
         order_scene_anew();
-        write_results();
+        write_results(false);
         return;
     }
     for (int y = 0; y < size.height; ++y) {
@@ -289,14 +281,14 @@ void PaperDecoder::Impl::stamp_results() noexcept {
     depth.sequence = centre.sequence;
     depth.span = frames[count - 1]->stamp - frames[0]->stamp;
     phase_map.stamp = centre.stamp;
-    if (takes_phase()) {
+    if (from_phases) {
         depth.stamp = phase_map.stamp = phases->depth().stamp;
         depth.sequence = phases->depth().sequence;
         depth.span = phases->depth().span;
     }
 }
 
-void PaperDecoder::Impl::decode() noexcept {
+void PaperDecoder::Impl::decode(bool fresh) noexcept {
     stamp_results();
     decode_phase();
     decoded = true;
@@ -309,7 +301,7 @@ void PaperDecoder::Impl::decode() noexcept {
             return;
         }
     }
-    write_results();
+    write_results(fresh);
 }
 
 }  // namespace xtrack

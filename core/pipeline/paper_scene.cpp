@@ -33,8 +33,14 @@ constexpr float kBandLight = 1.4F;
 
 }  // namespace
 
-bool PaperDecoder::Impl::front_is_sure() const noexcept {
-    return std::abs(shadows) >= kSureShadows;
+void PaperDecoder::Impl::forget_scene() noexcept {
+    orders.forget();
+    if (scene) {
+        scene->forget();
+    }
+    standing_out = 0.0;
+    shadows = 0;
+    front_is_sure = false;
 }
 
 // Shadows say which way is nearer; until one is seen, what stands out most is taken to be.
@@ -43,8 +49,13 @@ bool PaperDecoder::Impl::find_front() noexcept {
         std::clamp(standing_out + orders.standing_out(), -kMostStandingOut, kMostStandingOut);
     shadows = std::clamp(shadows + orders.shadows(), -kMostShadows, kMostShadows);
     const double before = front;
-    front = front_is_sure() ? (shadows < 0 ? -1.0 : 1.0) : standing_out < 0.0 ? -1.0 : 1.0;
-    return front_is_sure() && front != before && scene;
+    if (std::abs(shadows) >= kSureShadows) {
+        front_is_sure = true;
+        front = shadows < 0 ? -1.0 : 1.0;
+    } else if (!front_is_sure) {
+        front = standing_out < 0.0 ? -1.0 : 1.0;
+    }
+    return front_is_sure && front != before && scene;
 }
 
 // Of what stands still, whose orders were chosen for depth the other way round.
@@ -92,7 +103,7 @@ void PaperDecoder::Impl::learn_still() noexcept {
 
 // 1: more phase is nearer; -1: less is; 0: nothing has said so.
 double PaperDecoder::Impl::front_of_phase() const noexcept {
-    return geometry ? (orders.far_is_low() ? 1.0 : -1.0) : front_is_sure() ? front : 0.0;
+    return geometry ? (orders.far_is_low() ? 1.0 : -1.0) : front_is_sure ? front : 0.0;
 }
 
 // An outline that was cut out is of what moves, where its phase goes on from there. It stays in no
@@ -165,7 +176,7 @@ void PaperDecoder::Impl::close_band(int x, int y, int dx, int dy, int length) no
         const int v = y + n * dy;
         unwrapped.at(u, v) = begin_rad + slope * static_cast<float>(n) + off(n);
         component.at(u, v) = component.at(x, y);
-        scene->moves(u, v);
+        scene->set_moving(u, v);
     }
 }
 

@@ -41,8 +41,11 @@ class StillScene {
                ImageView<const float> modulation, double front, Stamp stamp) noexcept;
     void forget() noexcept;
 
-    /// The pixel moves after all.
-    void moves(int x, int y) noexcept { still_.at(x, y) = std::numeric_limits<float>::quiet_NaN(); }
+    /// A pixel that still_rad() has moves after all.
+    void set_moving(int x, int y) noexcept {
+        still_.at(x, y) = std::numeric_limits<float>::quiet_NaN();
+        --still_pixels_;
+    }
 
     /// Makes moving_rad() all that is known, wrapped, so that its turns can be found anew.
     void show_known() noexcept;

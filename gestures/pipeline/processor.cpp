@@ -138,12 +138,13 @@ int Processor::surfaces() const noexcept {
     constexpr int kLeast = 250;
     constexpr int kMost = 3;
     const auto components = paper_->components();
-    const auto& size = rig_.camera.size;
-    if (!components.empty() && kMost * components[0].pixels > size.width * size.height) {
+    const int pixels = rig_.camera.size.width * rig_.camera.size.height;
+    if (paper_->settings().motion == MotionHandling::off ||
+        (!components.empty() && components[0].pixels > pixels / kMost)) {
         return -1;
     }
     return static_cast<int>(std::count_if(components.begin(), components.end(), [&](const auto& c) {
-        return kLeast * c.pixels >= size.width * size.height;
+        return c.pixels >= pixels / kLeast;
     }));
 }
 

@@ -2,11 +2,7 @@
 #include "gestures/segment/relative_scene.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
-#include <numbers>
 
 #include "gestures/segment/chamfer.hpp"
 

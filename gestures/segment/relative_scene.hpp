@@ -42,7 +42,8 @@ class RelativeScene {
                 bool followed);
 
     [[nodiscard]] bool has_scale() const noexcept { return inverse_background_ > 0.0; }
-    /// What stands out from the background, in nominal mm, 0 elsewhere; all 0 while nothing has
+    /// What stands out from the background, in nominal mm, 0 elsewhere; once something has moved,
+    /// of what stands still only what is about as near as the hand; all 0 while nothing has
     /// stood out yet. Valid until the next update().
     [[nodiscard]] const DepthFrame& depth() const noexcept { return depth_; }
 

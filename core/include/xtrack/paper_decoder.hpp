@@ -32,7 +32,8 @@ struct PaperSettings {
     CaptureMode mode = CaptureMode::sliding;
     /// Fringe amplitude below which a pixel is masked, grey levels, 0 ... 127.
     double min_modulation = 6.0;
-    /// Mask pixels that reach 255 in any image: clipped sines have wrong phases.
+    /// Mask pixels that reach 255 in any image: clipped sines have wrong phases. Where colours or
+    /// motion are looked at, only create() looks at it.
     bool mask_saturated = true;
     /// Steps between neighbours that deviate by more from those beside them do not connect, rad,
     /// 0.1 ... 3.1.
@@ -44,7 +45,8 @@ struct PaperSettings {
     /// Whether points() is made.
     bool points = true;
     /// Off: every image is unwrapped for itself, as in the paper. Else what has not moved keeps its
-    /// place, and only the rest is looked at anew. Only create() looks at it.
+    /// place, and only the rest is looked at anew; and without a rig what moves between three steps
+    /// is followed, to the newest image. Only create() looks at it.
     MotionHandling motion = MotionHandling::off;
 };
 
@@ -78,8 +80,8 @@ struct PaperComponent {
 ///  - without one, nearest to the background; depth() is relative (`metric` false): the phase less
 ///    that of the background, kMmPerProjectorPx for each projector pixel, before kBackground_mm.
 ///    The background is what learn_background() was shown; until then, the plane in which the
-///    largest surface of the first decode lies along the image's border. What stands out most is
-///    taken to be in front.
+///    largest surface of the first decode lies along the image's border. Which way
+///    is in front is what shadows say; until enough were seen, what stands out most is.
 ///
 /// push() allocates nothing, except while no background is known without a rig.
 /// @thread one at a time
@@ -120,7 +122,8 @@ class PaperDecoder {
     /// Forgets the background: the next decode shows a plane again.
     void forget_background() noexcept;
 
-    /// The newest depth, of the stamp in the middle of its images; no depth in any pixel before the
+    /// The newest depth, of the stamp in the middle of its images, or of the newest where motion is
+    /// followed; no depth in any pixel before the
     /// first depth_ready. All results are valid until the next call that is not const.
     [[nodiscard]] const DepthFrame& depth() const noexcept;
     /// The depth as points of the camera frame, mm: rows of x, y, z for every pixel, NaN where

@@ -178,11 +178,11 @@ class Session {
     /// callback included
     void stop() noexcept;
 
-    /// False where the source has fringes and no rig: depth is relative, and positions, speeds and
-    /// lengths are in nominal millimetres, in which a palm is 80 wide. So are the thresholds: 100
-    /// mm are one and a quarter palm widths. Along the line of sight they are an estimate, good to
-    /// a factor of two. Gestures that compare what is smaller than a hand need true millimetres and
-    /// are not recognised (pinch). @thread any
+    /// False where the source has fringes and no rig, or none is used: depth is relative, and
+    /// positions, speeds and lengths are in nominal millimetres, in which a palm is 80 wide. So are
+    /// the thresholds: 100 mm are one and a quarter palm widths. Along the line of sight they are
+    /// an estimate, good to a factor of two. Gestures that compare what is smaller than a hand need
+    /// true millimetres and are not recognised (pinch). @thread any
     [[nodiscard]] bool metric() const noexcept;
 
     /// Settings of the PaperDecoder from the next frame on. @thread that of run() or step()
