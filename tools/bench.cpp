@@ -252,6 +252,12 @@ void add_bench(CLI::App& app, int& exit_status) {
             }
             wanted.push_back(*size);
         }
+        const auto& parts = options->parts;
+        if (options->recordings.empty() && parts == std::vector<std::string>{"recordings"}) {
+            exit_status = usage({ErrorCode::invalid_argument,
+                                 "--parts recordings: none is given; name them with --recordings"});
+            return;
+        }
         if (options->motion) {
             exit_status = bench_motion(*options);
             return;

@@ -45,7 +45,7 @@ Result<GreyCoordinates> GreyCoordinates::create(const PatternSequence& sequence,
     if (made.periods_.empty()) {
         return Error{ErrorCode::unsupported,
                      "pattern sequence: it has no three grey sines of one period, which tell where "
-                     "colours are; show those of light_sequence() (`xtrack calibrate patterns`)"};
+                     "colours are; show those of `xtrack calibrate patterns` (light_sequence())"};
     }
     auto reference = OrderReference::create(geometry, image, made.periods_.front().images.period_px,
                                             sequence.coded_length_px());

@@ -84,7 +84,7 @@ Result<void> LightCalibrator::Impl::prepare() {
     if (!has_ramp() && colours.empty()) {
         return unsupported(
             "the sequence shows neither a ramp of grey levels nor colour fringes; "
-            "show that of light_sequence() (`xtrack calibrate patterns`)");
+            "show that of `xtrack calibrate patterns` (light_sequence())");
     }
     if (!has_ramp() && !sequence.gamma && !sequence.response) {
         return unsupported(

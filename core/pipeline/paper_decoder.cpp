@@ -214,10 +214,12 @@ DecodeStatus PaperDecoder::Impl::push(const FramePtr& frame) noexcept {
         return kMore;
     }
     bool phase_ready = false;
-    if (phases) {
+    const bool steps = period->kind == PeriodKind::steps;
+    const bool burst = settings.mode == CaptureMode::burst;
+    if (phases && !(steps && burst)) {  // a burst is of its own images, whatever was before it
         const DecodeStatus status = phases->push(frame);
         phase_ready = status.state == DecodeState::depth_ready;
-        if (!phase_ready && period->kind != PeriodKind::steps) {
+        if (!phase_ready && !steps) {
             return status;
         }
     }
@@ -228,10 +230,8 @@ DecodeStatus PaperDecoder::Impl::push(const FramePtr& frame) noexcept {
         return kMore;
     }
     shown = window;
-    // A burst is of its own images, whatever was before it.
-    from_phases =
-        phase_ready && (period->kind != PeriodKind::steps || settings.mode != CaptureMode::burst);
-    if (settings.mode == CaptureMode::burst) {
+    from_phases = phase_ready;
+    if (burst) {
         window.clear();
     }
     decode(true);

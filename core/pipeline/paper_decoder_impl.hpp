@@ -40,7 +40,7 @@ struct PaperDecoder::Impl {
     void write_results(bool fresh) noexcept;
     [[nodiscard]] double front_of_phase() const noexcept;
     void forget_scene() noexcept;  ///< heights are before another background now
-    /// Whether the other way is nearer than was thought.
+    /// Whether it says now what it did not before.
     [[nodiscard]] bool find_front() noexcept;
     void order_scene_anew() noexcept;
     void write_still_row(int y) noexcept;

@@ -49,16 +49,17 @@ bool PaperDecoder::Impl::find_front() noexcept {
         std::clamp(standing_out + orders.standing_out(), -kMostStandingOut, kMostStandingOut);
     shadows = std::clamp(shadows + orders.shadows(), -kMostShadows, kMostShadows);
     const double before = front;
+    const bool was_sure = front_is_sure;
     if (std::abs(shadows) >= kSureShadows) {
         front_is_sure = true;
         front = shadows < 0 ? -1.0 : 1.0;
     } else if (!front_is_sure) {
         front = standing_out < 0.0 ? -1.0 : 1.0;
     }
-    return front_is_sure && front != before && scene;
+    return front_is_sure && !(was_sure && front == before) && scene;
 }
 
-// Of what stands still, whose orders were chosen for depth the other way round.
+// Of what stands still, whose orders were chosen before anything said which way is nearer.
 void PaperDecoder::Impl::order_scene_anew() noexcept {
     scene->show_known();
     const ImageView<const float> known = scene->moving_rad().view();

@@ -8,6 +8,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <xtrack/method.hpp>
+#include <xtrack/sim.hpp>
 
 #include "tests/core/pipeline/step_scene.hpp"
 
@@ -348,6 +350,91 @@ TEST(PaperDecoder, AThingWhosePhaseGoesOnIsKeptApartFromWhatStandsStill) {
             EXPECT_EQ(decoder.component().at(kWallU, kWallV), 65535);
         }
     }
+}
+
+const PatternSequence& wide_fringes() {
+    static const PatternSequence patterns = three_step_sequence(Axis::x, {1280, 768}, 64.0);
+    return patterns;
+}
+
+// A body that stands 50 px before the wall, to the image's right border, where no shadow of it is
+// seen: one fringe is 64, so that it might as well be 14 px behind. A hand comes, whose shadow is.
+// @param mirrored less phase is nearer
+DecodeState show_body_and_hand(PaperDecoder& decoder, int number, bool with_hand, bool mirrored) {
+    test::StepScene body;
+    body.plate_mm = 1.0 / (1.0 / 900.0 + 50.0 / 150000.0);
+    body.plate_left_mm = 0.0;
+    body.plate_right_mm = 2000.0;
+    body.plate_top_mm = -150.0;
+    body.plate_bottom_mm = 2000.0;
+    test::StepScene hand;
+    hand.plate_mm = 610.0;
+    hand.plate_left_mm = -220.0;
+    hand.plate_right_mm = -120.0;
+    DecodeState state = DecodeState::need_more;
+    for (int n = 0; n < 3; ++n) {
+        const auto frame = body.frame(wide_fringes(), n, 3 * number + n);
+        const auto before = hand.frame(wide_fringes(), n, 3 * number + n);
+        for (int v = 0; with_hand && v < 240; ++v) {
+            for (int u = 0; u < 320; ++u) {
+                if (hand.depth_mm(u, v) == hand.plate_mm || hand.shaded(u, v)) {
+                    frame->pixels.at(u, v) = before->pixels.at(u, v);
+                }
+            }
+        }
+        frame->pattern = mirrored ? (3 - n) % 3 : n;
+        state = decoder.push(frame).state;
+    }
+    return state;
+}
+
+TEST(PaperDecoder, AShadowSaysWhichWayIsNearer) {
+    for (const bool mirrored : {false, true}) {
+        PaperSettings settings;
+        settings.motion = MotionHandling::mask;
+        auto decoder = make(settings, nullptr, wide_fringes());
+        for (int n = 0; n < 10; ++n) {
+            ASSERT_EQ(show_body_and_hand(decoder, n, false, mirrored), DecodeState::depth_ready);
+        }
+        for (int n = 10; n < 16; ++n) {
+            show_body_and_hand(decoder, n, true, mirrored);
+        }
+        // Hand, body and wall, in px of the projector before the wall.
+        const auto height_px = [&](int u, int v) {
+            return (PaperDecoder::kBackground_mm - depth_at(decoder, u, v)) /
+                   PaperDecoder::kMmPerProjectorPx;
+        };
+        EXPECT_NEAR(height_px(75, 120), disparity_px(610.0), 3.0) << mirrored;
+        EXPECT_NEAR(height_px(240, 150), 50.0, 3.0) << mirrored;
+        EXPECT_NEAR(height_px(20, 20), 0.0, 3.0) << mirrored;
+        // And it stays so without the hand, however often an image is decoded.
+        show_body_and_hand(decoder, 16, false, mirrored);
+        for (int n = 0; n < 30; ++n) {
+            ASSERT_EQ(decoder.decode_again().state, DecodeState::depth_ready);
+        }
+        EXPECT_NEAR(height_px(240, 150), 50.0, 3.0) << mirrored;
+    }
+}
+
+TEST(PaperDecoder, AnImageThatIsRejectedSpoilsNoDecodeOfTheOneBefore) {
+    auto settings = *SimSettings::preset("webcam-30");
+    settings.camera.colour = true;
+    settings.patterns = *method_sequence(Method::rgb_static, settings.rig, Axis::y);
+    const auto rig = *SimulatedRig::create(settings);
+    auto decoder = PaperDecoder::create(settings.patterns, rig->rig().camera.size);
+    ASSERT_TRUE(decoder) << decoder.error().message;
+    const auto item = rig->next(std::chrono::seconds(1));
+    ASSERT_EQ(decoder->push(item.frame).state, DecodeState::depth_ready);
+    const int before = with_depth(*decoder);
+    EXPECT_GT(before, 100000);
+    auto grey = std::make_shared<Frame>(*item.frame);
+    grey->format = PixelFormat::grey8;
+    grey->pixels.resize(rig->rig().camera.size.width, rig->rig().camera.size.height);
+    grey->stamp = item.frame->stamp + std::chrono::milliseconds(33);
+    EXPECT_EQ(decoder->push(grey).state, DecodeState::rejected);
+    ASSERT_EQ(decoder->decode_again().state, DecodeState::depth_ready);
+    EXPECT_EQ(with_depth(*decoder), before);
+    ASSERT_TRUE(decoder->learn_background());
 }
 
 TEST(PaperDecoder, TakesAnyPeriodAndPassesOverOtherPatterns) {
