@@ -137,6 +137,11 @@ void choose_decoding(const StreamOptions& stream, SessionOptions& options) {
 Result<void> check_metric(const Session& session, const StreamOptions& options) {
     const bool pinch =
         options.gestures && (',' + *options.gestures + ',').find(",pinch,") != std::string::npos;
+    if (options.without_rig && session.metric()) {
+        return Error{ErrorCode::invalid_argument,
+                     "--without-rig: is for fringes, and the source has depth or joints; leave it "
+                     "out"};
+    }
     if (!session.metric() && pinch) {
         return Error{ErrorCode::unsupported,
                      options.without_rig

@@ -37,7 +37,8 @@ void add_stream_options(CLI::App& command, StreamOptions& options);
 void choose_decoding(const StreamOptions& stream, SessionOptions& options);
 
 /// What a source without a calibration allows: nothing that compares what is smaller than a hand.
-/// @errors unsupported: such a gesture was asked for
+/// @errors unsupported: such a gesture was asked for; invalid_argument: there is no calibration to
+///         do without
 [[nodiscard]] Result<void> check_metric(const Session& session, const StreamOptions& options);
 
 /// Runs a session to its end and prints. @param whole what is interrupted is not the whole answer:

@@ -33,6 +33,8 @@ constexpr float kBandLight = 1.4F;
 
 }  // namespace
 
+static_assert(PaperDecoder::kStill == ComponentOrders::kStill);
+
 void PaperDecoder::Impl::forget_scene() noexcept {
     orders.forget();
     if (scene) {

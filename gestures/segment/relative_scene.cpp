@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include <xtrack/paper_decoder.hpp>
+
 #include "gestures/segment/chamfer.hpp"
 
 namespace xtrack::segment {
@@ -31,7 +33,6 @@ constexpr double kUsualShare = 0.6;  ///< of the palms, is smaller
 /// Of what stands still only that is looked at which is so near: hands rest, bodies are behind
 /// them.
 constexpr double kRestingShare = 0.75;
-constexpr std::uint16_t kStill = 65535;  ///< PaperDecoder::component()
 constexpr double kLeast_mm = 1.0;
 
 }  // namespace
@@ -163,7 +164,7 @@ void RelativeScene::convert(const DepthFrame& relative, const Image<std::uint16_
         const std::uint16_t* ids = component.row(y);
         for (int x = 0; x < depth_.depth.width(); ++x) {
             const bool stands_out =
-                from[x] != 0 && from[x] < (moved_ && ids[x] == kStill ? near : high);
+                from[x] != 0 && from[x] < (moved_ && ids[x] == PaperDecoder::kStill ? near : high);
             const float z = stands_out ? step / (a - b * static_cast<float>(from[x])) : 0.0F;
             to[x] = z > 0.0F && z < kMost ? static_cast<std::uint16_t>(z) : std::uint16_t{0};
         }

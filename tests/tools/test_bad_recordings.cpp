@@ -353,6 +353,23 @@ TEST_F(Recording, WithoutRigGivesHeightsWithoutScale) {
     EXPECT_FALSE(fs::exists(out_ / "coordinate.tiff"));
 }
 
+TEST_F(Recording, CanBeReplayedAsIfItHadNoRig) {
+    write_fringes(recording_);
+    const Outcome outcome = xtrack_command({"replay", recording_.string(), "--without-rig"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("depth is relative"));
+    const Outcome pinch =
+        xtrack_command({"replay", recording_.string(), "--without-rig", "--gestures", "pinch"});
+    EXPECT_EQ(pinch.status, 2);
+    EXPECT_THAT(pinch.err, HasSubstr("leave out --without-rig"));
+    fs::remove_all(recording_);
+    write_joints(recording_);
+    const Outcome joints = xtrack_command({"replay", recording_.string(), "--without-rig"});
+    EXPECT_EQ(joints.status, 2);
+    EXPECT_THAT(joints.err, HasSubstr("the source has depth or joints"));
+    EXPECT_EQ(joints.out, "");
+}
+
 TEST_F(Recording, OfFourStepsHasNoGammaToFind) {
     write_fringes(recording_);
     set_text(recording_ / "pattern.yaml",

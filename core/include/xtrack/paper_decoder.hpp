@@ -135,7 +135,7 @@ class PaperDecoder {
     /// With a rig: the projector phase with all its whole turns, rad. Without: what it is off the
     /// background's. NaN where masked.
     [[nodiscard]] const Image<float>& unwrapped_rad() const noexcept;
-    /// Id of each pixel's component, 0 = none, 65535 = it stands still; and what is known of them.
+    /// Id of each pixel's component, 0 = none, kStill = it stands still; and what is known of them.
     [[nodiscard]] const Image<std::uint16_t>& component() const noexcept;
     [[nodiscard]] std::span<const PaperComponent> components() const noexcept;
 
@@ -145,6 +145,8 @@ class PaperDecoder {
     /// Frames until the first depth when none is lost.
     [[nodiscard]] int frames_needed() const noexcept;
 
+    /// In component(): what stands still is of none.
+    static constexpr std::uint16_t kStill = 65535;
     /// Where relative depth has its background, and how much nearer a projector pixel is.
     static constexpr double kBackground_mm = 1000.0;
     static constexpr double kMmPerProjectorPx = 2.0;

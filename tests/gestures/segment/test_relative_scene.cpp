@@ -2,6 +2,7 @@
 #include "gestures/segment/relative_scene.hpp"
 
 #include <gtest/gtest.h>
+#include <xtrack/paper_decoder.hpp>
 
 namespace xtrack::segment {
 namespace {
@@ -9,7 +10,7 @@ namespace {
 constexpr Size kImage{320, 240};
 constexpr double kBackground_mm = 1000.0;
 constexpr double kMmPerPx = 2.0;
-constexpr std::uint16_t kStill = 65535;
+constexpr std::uint16_t kStill = PaperDecoder::kStill;
 constexpr std::uint16_t kHand = 1;
 
 /// Relative depth of discs before a background, which are hands or heads.
