@@ -12,9 +12,10 @@ namespace xtrack {
 
 void colour_cost_scalar(const ColourCost& row) noexcept {
     using namespace colour_cost_weights;
-    const auto seen = [&](const std::array<const float*, 3>& light, int i) {
+    const auto seen = [](const ColourModel::Inverse& inverse,
+                         const std::array<const float*, 3>& light, int i) {
         const ColourModel::Light pixel(light[0][i], light[1][i], light[2][i]);
-        return ColourModel::Light(row.inverse * pixel);
+        return ColourModel::Light(inverse * pixel);
     };
     // Within one period.
     const auto coordinate_px = [](const ColourModel::Light& light, const ColourPeriod& period) {
@@ -28,13 +29,13 @@ void colour_cost_scalar(const ColourCost& row) noexcept {
     const auto fine_period = static_cast<float>(row.fine.period_px);
     const auto coarse_period = static_cast<float>(row.coarse.period_px);
     for (int i = 0; i < row.count; ++i) {
-        const ColourModel::Light fine = seen(row.samples.fine, i);
+        const ColourModel::Light fine = seen(row.inverse, row.samples.fine, i);
         const float fine_contrast = contrast_of(fine);
         bool possible = fine[0] > 0.0F && fine_contrast <= kMostContrast;
         float contrast = row.contrast;
         float reference_px = row.samples.reference_px[i];
         if (row.has_coarse) {
-            const ColourModel::Light coarse = seen(row.samples.coarse, i);
+            const ColourModel::Light coarse = seen(row.coarse_inverse, row.samples.coarse, i);
             contrast = contrast_of(coarse);
             possible = possible && coarse[0] > 0.0F && contrast <= kMostContrast;
             const float x = coordinate_px(coarse, row.coarse);
@@ -44,7 +45,7 @@ void colour_cost_scalar(const ColourCost& row) noexcept {
         float apart = (coordinate_px(fine, row.fine) - reference_px) / fine_period;
         apart -= std::floor(apart + 0.5F);
         apart = std::isnan(reference_px) ? 0.0F : apart;
-        const float between = fine_contrast - contrast;
+        const float between = fine_contrast - (row.has_coarse ? row.fade : 1.0F) * contrast;
         const float cost = kApart * apart * apart + kContrast * between * between;
         if (row.fine_contrast != nullptr) {
             row.fine_contrast[i] = fine_contrast;

@@ -28,7 +28,9 @@ using ColourSamplesOut = BasicColourSamples<float*>;
 /// How badly one surface explains samples.
 struct ColourCost {
     ColourModel::Inverse inverse = ColourModel::Inverse::Identity();  ///< of the surface
-    float contrast = 1.0F;                                            ///< of the surface
+    ColourModel::Inverse coarse_inverse = ColourModel::Inverse::Identity();
+    float contrast = 1.0F;  ///< of the surface
+    float fade = 1.0F;      ///< of the surface
     ColourPeriod fine;
     ColourPeriod coarse;
     bool has_coarse = false;  ///< else the surface's contrast stands for the coarse one's

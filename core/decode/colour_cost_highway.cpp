@@ -76,11 +76,13 @@ void measure(const ColourCost& row) {
         V reference = hn::LoadU(d, row.samples.reference_px + at);
         if (row.has_coarse) {
             V x = hn::Zero(d);
-            const V light = see(row.inverse, row.samples.coarse, row.coarse, at, contrast, x);
+            const V light =
+                see(row.coarse_inverse, row.samples.coarse, row.coarse, at, contrast, x);
             possible = hn::And(possible, possible_at(light, contrast));
             const V turns = nearest_whole(hn::Div(hn::Sub(reference, x), coarse_period));
             const V unwrapped = hn::MulAdd(coarse_period, turns, x);
             reference = hn::IfThenElse(hn::Eq(reference, reference), unwrapped, x);
+            contrast = hn::Mul(contrast, hn::Set(d, row.fade));
         }
         V apart = hn::Div(hn::Sub(fine_px, reference), fine_period);
         apart = hn::Sub(apart, nearest_whole(apart));

@@ -16,6 +16,7 @@ constexpr float kTurn = 2.0F * std::numbers::pi_v<float>;
 // Skin of any tone reflects about twice as much red as blue (haemoglobin, melanin).
 constexpr std::array<float, 3> kSkin{1.4F, 0.95F, 0.75F};
 constexpr float kSkinContrast = 0.7F;
+constexpr float kLikeSkin = 0.1F;  // nearer in E: light may go through it
 // Grey, and as many tints around it, of which skin is one, that all neighbours are as far apart.
 constexpr std::size_t kTints = 7;
 
@@ -26,6 +27,7 @@ constexpr float kMixed = 0.05F;
 // A window as narrow as a finger is taken if its pixels agree so much better.
 constexpr float kNarrowShare = 0.5F;
 constexpr float kLeastLight = 30.0F;  // grey levels, sum of the colours
+constexpr float kSameLight = 0.1F;
 
 // What a surface is believed to be counts as so many pixels.
 constexpr float kBelievedPixels = 20.0F;
@@ -104,6 +106,7 @@ void ColourPalette::set(std::size_t entry, const ColourSurface& surface) noexcep
     Entry& e = entries_[entry];
     e.surface = surface;
     e.inverse = model_.inverse(surface);
+    e.coarse_inverse = model_.coarse_inverse(surface);
     e.taps = model_.taps(e.inverse);
 }
 
@@ -175,6 +178,12 @@ bool ColourPalette::is_alone(int sx, int sy) const noexcept {
     return !coarse_ && std::isnan(planes_[6].at(sx, sy));
 }
 
+// True where both periods show the same light, as where no fringes fall: any surface explains it.
+bool ColourPalette::is_unlit(int sx, int sy) const noexcept {
+    const ColourModel::Light fine = fine_at(sx, sy);
+    return coarse_ && (fine - coarse_at(sx, sy)).cwiseAbs().sum() < kSameLight * fine.sum();
+}
+
 // The cost of contrasts that differ from their mean, and of a mean that is not the surface's.
 void ColourPalette::judge_contrasts(Evidence& sum) const noexcept {
     if (sum.alone <= 0.0F) {
@@ -207,7 +216,9 @@ void ColourPalette::measure(const Entry& entry, const ColourSamples& samples, fl
                             int count, float* cost, float* fine_contrast) const noexcept {
     ColourCost row;
     row.inverse = entry.inverse;
+    row.coarse_inverse = entry.coarse_inverse;
     row.contrast = entry.surface.contrast;
+    row.fade = entry.surface.fade;
     row.fine = fine_;
     row.has_coarse = coarse_.has_value();
     row.coarse = coarse_.value_or(ColourPeriod{});
@@ -426,14 +437,15 @@ void ColourPalette::refine() noexcept {
                 cells_.at(sx * kSampleStepPx / kCellPx, sy * kSampleStepPx / kCellPx);
             const std::size_t surface = surface_of(value);
             // What moved agrees only about; it can wait until it rests.
-            if (is_moved(value) || light.sum() < kLeastLight || !teaches(surface, sx, sy)) {
+            if (is_moved(value) || light.sum() < kLeastLight || is_unlit(sx, sy) ||
+                !teaches(surface, sx, sy)) {
                 continue;
             }
             Entry& entry = entries_[surface];
             const ColourModel::Light fine = entry.inverse * light;
             entry.fit.add(entry.surface, fine, 1.0F);
             if (coarse_) {
-                const ColourModel::Light coarse = entry.inverse * coarse_at(sx, sy);
+                const ColourModel::Light coarse = entry.coarse_inverse * coarse_at(sx, sy);
                 const float ratio =
                     static_cast<float>(fine_.period_px) / static_cast<float>(coarse_->period_px);
                 const float ahead = shares_apart(coordinate_px(coarse, *coarse_),
@@ -443,6 +455,7 @@ void ColourPalette::refine() noexcept {
             }
         }
     }
+    const ColourSurface skin = model_.surface(kSkin, kSkinContrast);
     for (std::size_t k = 0; k < used_; ++k) {
         // Half a step: which cells are a surface's changes with what is believed of it.
         Entry& entry = entries_[k];
@@ -450,6 +463,11 @@ void ColourPalette::refine() noexcept {
             entry.fit.solve(entry.surface, kBelievedPixels + kDamping * entry.fit.pixels());
         if (!coarse_) {
             keep_near(entry.given, found.log_gain);
+        }
+        if (std::hypot(found.log_gain[0] - skin.log_gain[0], found.log_gain[1] - skin.log_gain[1]) >
+            kLikeSkin) {
+            found.fade = 1.0F;
+            found.log_fade = {};
         }
         set(k, found);
     }

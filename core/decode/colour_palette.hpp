@@ -108,6 +108,7 @@ class ColourPalette {
         ColourSurface surface;
         std::array<float, 2> given{};  ///< its log_gain at first, where it may not leave it far
         ColourModel::Inverse inverse = ColourModel::Inverse::Identity();
+        ColourModel::Inverse coarse_inverse = ColourModel::Inverse::Identity();
         ColourModel::Taps taps{};
         ColourFit fit;
         int cells = 0;            // that chose it lately
@@ -131,6 +132,7 @@ class ColourPalette {
     [[nodiscard]] ColourModel::Light fine_at(int sx, int sy) const noexcept;
     [[nodiscard]] ColourModel::Light coarse_at(int sx, int sy) const noexcept;
     [[nodiscard]] bool is_alone(int sx, int sy) const noexcept;
+    [[nodiscard]] bool is_unlit(int sx, int sy) const noexcept;
     /// As bright: of one surface, as far as that goes.
     [[nodiscard]] static bool alike(const Evidence& a, const Evidence& b) noexcept {
         constexpr float kAlike = 1.4F;

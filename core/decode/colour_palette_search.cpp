@@ -66,6 +66,9 @@ void ColourPalette::search() noexcept {
         }
         const int sx = std::min(cx * kCellPx / kSampleStepPx + 1, samples_.width - 1);
         const int sy = std::min(cy * kCellPx / kSampleStepPx + 1, samples_.height - 1);
+        if (is_unlit(sx, sy)) {
+            continue;
+        }
         ++done;
         ColourSearch::Hypotheses hypotheses;
         const std::size_t found =

@@ -18,14 +18,22 @@ constexpr float kOtherContrast = 0.15F;
 // Only the second harmonic tells tint from gain, and rooms are dark beside the projector: that
 // there is no tint is believed for this share of the pixels.
 constexpr float kTintShare = 1.0F;
+// Most surfaces are opaque: that they fade no colour more than another is believed for as many.
+constexpr float kFadeShare = 0.1F;
 constexpr float kLeastContrast = 0.1F;
 constexpr float kMostContrast = 1.05F;     // 1, and what noise adds
 constexpr float kMostSeenContrast = 1.2F;  // of one pixel
 constexpr float kMostLogGain = 0.4F;       // |E|; colours 3 times apart, beyond it one is missing
 constexpr float kMostTint = 0.5F;
+constexpr float kLeastFade = 0.3F;
+constexpr float kMostLogFade = 0.2F;
 
-using Matrix5 = Eigen::Matrix<float, 5, 5>;
-using Vector5 = Eigen::Matrix<float, 5, 1>;
+// Where the unknowns are.
+constexpr int kFineContrast = 0;
+constexpr int kCoarseContrast = 1;
+constexpr int kGain = 2;
+constexpr int kTint = 4;
+constexpr int kFade = 6;
 
 // 2 Re(c e^{-ip}): what a colour has of a deviation.
 float of_colour(const std::array<float, 2>& c, float cosine, float sine) noexcept {
@@ -33,9 +41,22 @@ float of_colour(const std::array<float, 2>& c, float cosine, float sine) noexcep
 }
 
 // What is believed already, in a linear equation for all of it.
-float rest(const std::array<float, 5>& slope, const ColourSurface& believed) noexcept {
-    return slope[1] * believed.log_gain[0] + slope[2] * believed.log_gain[1] +
-           slope[3] * believed.tint[0] + slope[4] * believed.tint[1];
+float rest(const std::array<float, 8>& slope, const ColourSurface& believed) noexcept {
+    return slope[kGain] * believed.log_gain[0] + slope[kGain + 1] * believed.log_gain[1] +
+           slope[kTint] * believed.tint[0] + slope[kTint + 1] * believed.tint[1] +
+           slope[kFade] * believed.log_fade[0] + slope[kFade + 1] * believed.log_fade[1];
+}
+
+// What a contrast counts that is off from what is believed.
+float usual(float off) noexcept {
+    const float other = off / kOtherContrast;
+    return 1.0F / (1.0F + other * other);
+}
+
+// Shortened to a length.
+std::array<float, 2> within(float most, float re, float im) noexcept {
+    const float share = most / std::max(std::hypot(re, im), most);
+    return {share * re, share * im};
 }
 
 }  // namespace
@@ -67,13 +88,20 @@ Result<ColourModel> ColourModel::create(const std::array<double, 3>& phases_rad,
     return model;
 }
 
+ColourModel::Inverse ColourModel::coarse_inverse(const ColourSurface& surface) const noexcept {
+    ColourSurface opaque = surface;
+    opaque.log_fade = {};
+    return inverse(opaque);
+}
+
 ColourModel::Inverse ColourModel::inverse(const ColourSurface& surface) const noexcept {
     Eigen::Matrix3f forward;
     for (int row = 0; row < 3; ++row) {
         const auto k = static_cast<std::size_t>(row);
         const float gain = std::exp(of_colour(surface.log_gain, cosine_[k], sine_[k]));
         const float tint = of_colour(surface.tint, cosine_[k], sine_[k]);
-        forward.row(row) << gain * (1.0F + tint), gain * cosine_[k], -gain * sine_[k];
+        const float fringe = gain * std::exp(of_colour(surface.log_fade, cosine_[k], sine_[k]));
+        forward.row(row) << gain * (1.0F + tint), fringe * cosine_[k], -fringe * sine_[k];
     }
     return forward.inverse();
 }
@@ -119,10 +147,11 @@ void ColourFit::add(const ColourSurface& believed, const ColourModel::Light& see
     const float contrast = amplitude / seen[0];
     const float c = seen[1] / amplitude;
     const float s = seen[2] / amplitude;
-    const Row slope{1.0F, first * c + kappa * (c * c - s * s), kappa * 2.0F * c * s - first * s,
-                    2.0F * c, -2.0F * s};
-    const float other = (contrast - kappa) / kOtherContrast;
-    add_equation(slope, contrast + rest(slope, believed), weight / (1.0F + other * other));
+    const float c2 = c * c - s * s;
+    const float s2 = 2.0F * c * s;
+    const Row slope{1.0F,     0.0F,      first * c + kappa * c2,   kappa * s2 - first * s,
+                    2.0F * c, -2.0F * s, kappa * (c2 - kappa * c), kappa * (s2 + kappa * s)};
+    add_equation(slope, contrast + rest(slope, believed), weight * usual(contrast - kappa));
 }
 
 void ColourFit::add_equation(const Row& slope, float right, float weight) noexcept {
@@ -143,16 +172,25 @@ void ColourFit::add_pair(const ColourSurface& believed, const ColourModel::Light
     if (!(fine.tail<2>().squaredNorm() > 0.0F) || !(coarse.tail<2>().squaredNorm() > 0.0F)) {
         return;
     }
-    const float kappa = believed.contrast;
+    // Over a hand a long period has few phases: where its contrast is another, the light may be.
+    const float contrast = coarse.tail<2>().norm() / coarse[0];
+    if (contrast < kMostSeenContrast) {
+        const Row slope{0.0F, 1.0F};
+        const float off = contrast - believed.contrast / believed.fade;
+        add_equation(slope, contrast, weight * usual(off));
+    }
     // kappa times the error of the phase has the noise of the contrast.
+    const float kappa = believed.contrast;
     const auto phase_slope = [&](const ColourModel::Light& seen) {
         const float amplitude = std::sqrt(seen[1] * seen[1] + seen[2] * seen[2]);
         const float c = seen[1] / amplitude;
         const float s = seen[2] / amplitude;
-        return Row{0.0F, -2.0F * s - kappa * 2.0F * c * s, -2.0F * c + kappa * (c * c - s * s),
-                   -2.0F * s, -2.0F * c};
+        const float c2 = kappa * (c * c - s * s);
+        const float s2 = kappa * 2.0F * c * s;
+        return Row{0.0F, 0.0F, -2.0F * s - s2, -2.0F * c + c2, -2.0F * s, -2.0F * c, -s2, c2};
     };
     Row slope = phase_slope(coarse);
+    slope[kFade] = slope[kFade + 1] = 0.0F;
     const Row of_fine = phase_slope(fine);
     for (std::size_t i = 0; i < kUnknowns; ++i) {
         slope[i] -= ratio * of_fine[i];
@@ -168,35 +206,45 @@ void ColourFit::fade(float share) noexcept {
 
 ColourSurface ColourFit::solve(const ColourSurface& believed,
                                float believed_pixels) const noexcept {
-    Matrix5 normal;
-    Vector5 right;
+    constexpr int kCount = static_cast<int>(kUnknowns);
+    Eigen::Matrix<float, kCount, kCount> normal;
+    Eigen::Matrix<float, kCount, 1> right;
     std::size_t next = 0;
-    for (int i = 0; i < static_cast<int>(kUnknowns); ++i) {
-        for (int j = i; j < static_cast<int>(kUnknowns); ++j) {
+    for (int i = 0; i < kCount; ++i) {
+        for (int j = i; j < kCount; ++j) {
             normal(i, j) = normal(j, i) = sums_[next++];
         }
     }
-    for (int i = 0; i < static_cast<int>(kUnknowns); ++i) {
+    for (int i = 0; i < kCount; ++i) {
         right(i) = sums_[next++];
     }
-    const float tint_pixels = believed_pixels + kTintShare * sums_[0];
-    Vector5 weights;
-    weights << believed_pixels, believed_pixels, believed_pixels, tint_pixels, tint_pixels;
-    Vector5 prior;
-    prior << believed.contrast, believed.log_gain[0], believed.log_gain[1], 0.0F, 0.0F;
+    // What nothing was seen of, stays.
+    const bool pairs = normal(kCoarseContrast, kCoarseContrast) > 0.0F;
+    constexpr float kSurely = 1e6F;
+    const float tint = believed_pixels + kTintShare * sums_[0];
+    const float fade = pairs ? believed_pixels + kFadeShare * sums_[0] : kSurely;
+    Eigen::Matrix<float, kCount, 1> weights;
+    weights << believed_pixels, believed_pixels, believed_pixels, believed_pixels, tint, tint, fade,
+        fade;
+    Eigen::Matrix<float, kCount, 1> prior;
+    prior << believed.contrast, believed.contrast / believed.fade, believed.log_gain[0],
+        believed.log_gain[1], 0.0F, 0.0F, 0.0F, 0.0F;
     normal.diagonal() += weights;
     right += weights.cwiseProduct(prior);
-    const Vector5 found = normal.ldlt().solve(right);
+    const Eigen::Matrix<float, kCount, 1> found = normal.ldlt().solve(right);
     if (!found.allFinite()) {
         return believed;
     }
     ColourSurface surface;
-    surface.contrast = std::clamp(found[0], kLeastContrast, kMostContrast);
-    const float log_gain = std::hypot(found[1], found[2]);
-    const float within = log_gain > kMostLogGain ? kMostLogGain / log_gain : 1.0F;
-    surface.log_gain = {within * found[1], within * found[2]};
-    surface.tint = {std::clamp(found[3], -kMostTint, kMostTint),
-                    std::clamp(found[4], -kMostTint, kMostTint)};
+    surface.contrast = std::clamp(found[kFineContrast], kLeastContrast, kMostContrast);
+    if (pairs) {
+        const float coarse = std::max(found[kCoarseContrast], kLeastContrast);
+        surface.fade = std::clamp(surface.contrast / coarse, kLeastFade, 1.0F);
+        surface.log_fade = within(kMostLogFade, found[kFade], found[kFade + 1]);
+    }
+    surface.log_gain = within(kMostLogGain, found[kGain], found[kGain + 1]);
+    surface.tint = {std::clamp(found[kTint], -kMostTint, kMostTint),
+                    std::clamp(found[kTint + 1], -kMostTint, kMostTint)};
     return surface;
 }
 

@@ -17,10 +17,17 @@ namespace xtrack {
 /// s the light, g_k the gain of colour k, o_k a tint of the ambient light. Only deviations between
 /// the colours matter, so gains and tints are kept as one complex number each:
 ///   ln g_k = 2 Re(E e^{-ip_k}),  o_k = 2 Re(O e^{-ip_k}),  p_k counted from red's.
+///
+/// Light that goes through skin comes out beside where it went in, red farther than blue, which
+/// washes short fringes out and leaves long ones: of the fine period there is only
+///   f h_k kappa cos(phi + p_k),  ln h_k = 2 Re(F e^{-ip_k}).
+/// Where only one period is known this is the same as gains and a tint.
 struct ColourSurface {
-    float contrast = 1.0F;            ///< kappa
+    float contrast = 1.0F;            ///< kappa f, that of the fine period
     std::array<float, 2> log_gain{};  ///< E
     std::array<float, 2> tint{};      ///< O
+    float fade = 1.0F;                ///< f
+    std::array<float, 2> log_fade{};  ///< F
 };
 
 /// The colours of a projector and a camera, and the arithmetic of surfaces under them.
@@ -45,7 +52,10 @@ class ColourModel {
     [[nodiscard]] Light light(const std::uint8_t* bgr) const noexcept {
         return projector_from_bgr_ * Light(bgr[0], bgr[1], bgr[2]);
     }
+    /// Of the fine period; contrast and fade are left in.
     [[nodiscard]] Inverse inverse(const ColourSurface& surface) const noexcept;
+    /// Of the coarse one.
+    [[nodiscard]] Inverse coarse_inverse(const ColourSurface& surface) const noexcept;
     /// Taps that give the phase of a pattern whose red has the phase 0.
     [[nodiscard]] Taps taps(const Inverse& inverse) const noexcept;
     /// Red, green, blue, relative to their geometric mean.
@@ -68,27 +78,30 @@ class ColourModel {
 /// What is wrong in them shows: the contrast |z| / s, which must not depend on the phase, then has
 /// harmonics. With ln g_k off by E and o_k by O,
 ///   |z| / s = kappa + (2 - kappa^2) Re(E e^{i phi}) + kappa Re(E* e^{2 i phi}) + 2 Re(O e^{i phi})
+///             - kappa^2 Re(F e^{i phi}) + kappa Re(F* e^{2 i phi})
 /// to first order. So they follow by least squares, and Gauss-Newton steps make them exact.
+/// One period alone does not tell F: add_pair() does.
 class ColourFit {
  public:
     /// One pixel as seen under what is believed now.
     /// @param seen model.inverse(believed) * light
     void add(const ColourSurface& believed, const ColourModel::Light& seen, float weight) noexcept;
-    /// The same pixel under a second, coarser period: their phases must agree.
+    /// The same pixel under a second, coarser period, which has a contrast of its own: their phases
+    /// must agree.
     /// @param ratio of the fine period to the coarse one
     /// @param ahead_rad the coarse phase, less what the fine one says it should be
     void add_pair(const ColourSurface& believed, const ColourModel::Light& fine,
                   const ColourModel::Light& coarse, float ratio, float ahead_rad,
                   float weight) noexcept;
     [[nodiscard]] float pixels() const noexcept { return sums_[0]; }
-    /// One step. What is believed counts as so many pixels.
+    /// One step. What is believed counts as so many pixels. F is zero until there are pairs.
     [[nodiscard]] ColourSurface solve(const ColourSurface& believed,
                                       float believed_pixels) const noexcept;
-    void clear() noexcept { sums_.fill(0.0F); }
+    void clear() noexcept { fade(0.0F); }
     void fade(float share) noexcept;
 
  private:
-    static constexpr std::size_t kUnknowns = 5;  // kappa, E, O
+    static constexpr std::size_t kUnknowns = 8;  // kappa of fine and coarse, E, O, F
     using Row = std::array<float, kUnknowns>;
     void add_equation(const Row& slope, float right, float weight) noexcept;
     // Of the normal equations: upper triangle, right side.

@@ -22,6 +22,7 @@ struct ColourPixel {
     std::array<double, 3> tint{0.0, 0.0, 0.0};
     double contrast = 0.9;
     double shade = 60.0;
+    std::array<double, 3> fade{1.0, 1.0, 1.0};  ///< of contrast, in every period looked at
 
     /// Light of the projector's red, green, blue.
     [[nodiscard]] Vec3d light(double coordinate_px, const ColourPeriod& period,
@@ -31,7 +32,7 @@ struct ColourPixel {
             const double phase = 2.0 * std::numbers::pi * coordinate_px / period.period_px +
                                  period.phase_rad + steps_rad[k] - steps_rad[0];
             out[static_cast<int>(k)] =
-                shade * gains[k] * (1.0 + tint[k] + contrast * std::cos(phase));
+                shade * gains[k] * (1.0 + tint[k] + contrast * fade[k] * std::cos(phase));
         }
         return out;
     }

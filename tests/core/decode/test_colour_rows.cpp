@@ -111,12 +111,14 @@ TEST(ColourCost, IsNothingUnderTheRightSurfaceAndMuchUnderAnother) {
     // The reference serves the coarse period alone: 300 px off do not matter.
     Scene s = scene({{1.4, 0.95, 0.75}, {}, 0.8}, 400, 300.0);
     s.row.inverse = model.inverse(model.surface({1.4F, 0.95F, 0.75F}, 0.8F));
+    s.row.coarse_inverse = model.coarse_inverse(model.surface({1.4F, 0.95F, 0.75F}, 0.8F));
     colour_cost(s.row);
     for (int i = 0; i < s.row.count; ++i) {
         ASSERT_LT(s.cost[static_cast<std::size_t>(i)], 1e-4F) << i;
     }
     EXPECT_EQ(s.cost.back(), kGuard);
     s.row.inverse = model.inverse(ColourSurface{});
+    s.row.coarse_inverse = model.coarse_inverse(ColourSurface{});
     colour_cost(s.row);
     double sum = 0.0;
     for (int i = 0; i < s.row.count; ++i) {
@@ -130,6 +132,7 @@ TEST(ColourCost, WithoutACoarsePeriodTheReferenceAndTheContrastMustAgree) {
     Scene s = scene({{1.0, 1.0, 1.0}, {}, 0.8}, 64, 24.0);  // a quarter of a period
     s.row.inverse = model.inverse(ColourSurface{});
     s.row.has_coarse = false;
+    s.row.fade = 0.5F;  // has no meaning then
     s.row.contrast = 0.7F;
     colour_cost(s.row);
     EXPECT_NEAR(s.cost[0], 4.0F * 0.25F * 0.25F + 4.0F * 0.1F * 0.1F, 1e-3F);
@@ -143,6 +146,8 @@ TEST(ColourCost, EveryInstructionSetAgreesWithScalar) {
             Scene s = scene({{1.3, 0.9, 0.8}, {0.1, 0.0, 0.0}, 0.9}, count, 40.0);
             s.row.has_coarse = has_coarse;
             s.row.inverse = model.inverse(ColourSurface{0.8F, {0.05F, -0.02F}, {}});
+            s.row.coarse_inverse = model.coarse_inverse(ColourSurface{0.8F, {0.03F, -0.02F}, {}});
+            s.row.fade = 0.8F;
             colour_cost_scalar(s.row);
             const std::vector<float> expected = s.cost;
             test::for_each_target([&] {

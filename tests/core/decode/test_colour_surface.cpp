@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/decode/colour_surface.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -41,8 +42,10 @@ ColourSurface fitted(const ColourModel& model, ColourPixel pixel, const Mat3d& c
             const ColourModel::Light fine = inverse * model.light(bgr);
             fit.add(believed, fine, 1.0F);
             if (pairs) {
-                test::photograph(pixel.light(x, kCoarse, steps_rad), camera, bgr);
-                const ColourModel::Light coarse = inverse * model.light(bgr);
+                ColourPixel opaque = pixel;
+                opaque.fade = {1.0, 1.0, 1.0};
+                test::photograph(opaque.light(x, kCoarse, steps_rad), camera, bgr);
+                const ColourModel::Light coarse = model.coarse_inverse(believed) * model.light(bgr);
                 const double fine_rad = std::atan2(fine[2], fine[1]);
                 const double coarse_rad = std::atan2(coarse[2], coarse[1]);
                 const double ratio = kFine.period_px / kCoarse.period_px;
@@ -84,6 +87,31 @@ TEST(ColourFit, TwoPeriodsSayTheSame) {
     const ColourModel model = ColourModel::create(kThirds_rad, Mat3d::Identity()).value();
     const ColourPixel skin{{1.4, 0.95, 0.75}, {}, 0.8};
     expect_gains(model, fitted(model, skin, Mat3d::Identity(), kThirds_rad, true), skin, 0.01);
+}
+
+// Skin: light of a short period is washed out, that of red most.
+TEST(ColourFit, TellsWhatFadesFromWhatTints) {
+    const ColourModel model = ColourModel::create(kThirds_rad, Mat3d::Identity()).value();
+    ColourPixel skin{{1.4, 0.95, 0.75}, {}, 0.8};
+    skin.fade = {0.7, 0.85, 0.95};
+    const ColourSurface found = fitted(model, skin, Mat3d::Identity(), kThirds_rad, true);
+    const std::array<float, 3> gains = model.gains(found);
+    EXPECT_NEAR(gains[0] / gains[1], 1.4 / 0.95, 0.05);
+    EXPECT_NEAR(gains[2] / gains[1], 0.75 / 0.95, 0.05);
+    EXPECT_NEAR(found.fade, std::cbrt(0.7 * 0.85 * 0.95), 0.03);
+    const ColourModel::Inverse inverse = model.inverse(found);
+    double worst = 0.0;
+    for (int n = 0; n < 96; ++n) {
+        const ColourModel::Light seen =
+            inverse * ColourModel::Light(skin.light(n, kFine).cast<float>());
+        const double error = std::remainder(
+            std::atan2(seen[2], seen[1]) - kFine.phase_rad - 2.0 * kPi * n / kFine.period_px,
+            2.0 * kPi);
+        worst = std::max(worst, std::fabs(error));
+    }
+    EXPECT_LT(worst, 0.06);
+    // One period alone calls it gains and a tint.
+    EXPECT_EQ(fitted(model, skin, Mat3d::Identity()).fade, 1.0F);
 }
 
 TEST(ColourFit, UndoesCrosstalkAndGoesTheOtherWayRound) {

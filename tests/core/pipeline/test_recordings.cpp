@@ -2,9 +2,11 @@
 // Photographs and rendered recordings with known answers, kept beside the project's folder
 // (../shared/data); skipped where they are absent.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <iterator>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -174,6 +176,76 @@ INSTANTIATE_TEST_SUITE_P(
                     Still{"rendered/static-three-step", OrderSource::depth_image, 0.45},
                     Still{"rendered/static-rgb", OrderSource::automatic, 0.6},
                     Still{"rendered/static-dual-gamma22", OrderSource::automatic, 0.8}));
+
+// Light that enters skin comes out around there, farther in red than in blue: six tenths of it with
+// sigma, the rest with three times as much, px (1.2 mm each).
+void let_light_through(test::RecordingOnDisk& recording, const std::array<double, 3>& sigma_bgr) {
+    const Image<std::uint8_t> mask = recording.truth_mask(0);
+    constexpr int kLastSkin = 3;  // hand, forearm, the rest of the arm
+    cv::Mat skin(mask.height(), mask.width(), CV_32F);
+    for (int y = 0; y < skin.rows; ++y) {
+        for (int x = 0; x < skin.cols; ++x) {
+            skin.at<float>(y, x) = mask.at(x, y) >= 1 && mask.at(x, y) <= kLastSkin ? 1.0F : 0.0F;
+        }
+    }
+    const auto blurred = [&](const cv::Mat& light, double sigma) {
+        cv::Mat sum;
+        cv::Mat weight;
+        cv::GaussianBlur(light.mul(skin), sum, {}, sigma);
+        cv::GaussianBlur(skin, weight, {}, sigma);
+        return cv::Mat(sum / (weight + 1e-6));
+    };
+    cv::RNG noise(1);
+    for (FramePtr& frame : recording.frames) {
+        auto changed = std::make_shared<Frame>(*frame);
+        const int channels = frame->channels();
+        for (int c = 0; c < channels; ++c) {
+            cv::Mat light(skin.rows, skin.cols, CV_32F);
+            for (int y = 0; y < skin.rows; ++y) {
+                for (int x = 0; x < skin.cols; ++x) {
+                    light.at<float>(y, x) = frame->pixels.at(channels * x + c, y);
+                }
+            }
+            const double sigma = sigma_bgr[channels == 1 ? 1 : static_cast<std::size_t>(c)];
+            const cv::Mat through = 0.6 * blurred(light, sigma) + 0.4 * blurred(light, 3.0 * sigma);
+            for (int y = 0; y < skin.rows; ++y) {
+                for (int x = 0; x < skin.cols; ++x) {
+                    if (skin.at<float>(y, x) > 0.0F) {
+                        changed->pixels.at(channels * x + c, y) = cv::saturate_cast<std::uint8_t>(
+                            through.at<float>(y, x) + static_cast<float>(noise.gaussian(0.8)));
+                    }
+                }
+            }
+        }
+        frame = changed;
+    }
+}
+
+struct Translucent {
+    const char* name;
+    std::array<double, 3> sigma_bgr;
+    double rms_mm;
+};
+class TranslucentSkin : public testing::TestWithParam<Translucent> {};
+
+TEST_P(TranslucentSkin, IsMeasuredAllTheSame) {
+    LOAD_OR_SKIP(GetParam().name, recording);
+    let_light_through(recording, GetParam().sigma_bgr);
+    const DepthDecoder decoder = decode_all(recording, {});
+    const HandScore score = judge(recording, decoder.depth(), 0, 2, 15.0);
+    std::printf("%s, %.1f px in green: RMS %.2f mm, off %.2f %%, missing %.2f %%\n",
+                GetParam().name, GetParam().sigma_bgr[1], score.rms_mm, 100.0 * score.off,
+                100.0 * score.missing);
+    EXPECT_LE(score.rms_mm, GetParam().rms_mm);
+    EXPECT_LE(score.off, 0.01);
+    EXPECT_LE(score.missing, 0.03);
+}
+
+INSTANTIATE_TEST_SUITE_P(Rendered, TranslucentSkin,
+                         testing::Values(Translucent{"rendered/static-dual", {0.6, 1.0, 2.0}, 0.6},
+                                         Translucent{"rendered/static-gray", {0.6, 1.0, 2.0}, 0.6},
+                                         Translucent{"rendered/static-rgb", {0.3, 0.4, 1.0}, 0.7},
+                                         Translucent{"rendered/static-rgb", {0.6, 1.0, 2.0}, 1.3}));
 
 // Grey fringes of the same scene say where on the projector each pixel looks. No ramp, no white:
 // the projector is known to be linear, and the colours of skin, clothes and wall average.
