@@ -472,6 +472,10 @@ void add_decode(CLI::App& app, int& exit_status) {
                 return;
             }
         }
+        if (const auto ok = check_settings(options->changes, DecodeMethod::pattern); !ok) {
+            exit_status = usage(ok.error());
+            return;
+        }
         if (const std::string why = gamma_complaint(options->gamma); !why.empty()) {
             exit_status = usage({ErrorCode::invalid_argument, why});
             return;

@@ -25,17 +25,17 @@ void add_replay(CLI::App& app, int& exit_status) {
             exit_status = usage(chosen.error());
             return;
         }
+        choose_decoding(*stream, options);
         if (const auto set = apply_settings(stream->changes, options.decode); !set) {
             exit_status = usage(set.error());
             return;
         }
-        choose_decoding(*stream, options);
         auto session = Session::open(*folder, options);
         if (!session) {
             exit_status = fail(session.error());
             return;
         }
-        if (const auto possible = check_metric(*session, *stream); !possible) {
+        if (const auto possible = check_stream(*session, *stream); !possible) {
             exit_status = usage(possible.error());
             return;
         }

@@ -82,6 +82,11 @@ void add_run(CLI::App& app, int& exit_status) {
                      "Simulator: what the projector shows; auto or a name from `xtrack methods`")
         ->check(not_empty());
     add_stream_options(*command, run->stream);
+#ifndef _WIN32
+    command->add_flag("--control", run->stream.control,
+                      "Change settings while it runs: NAME=VALUE lines on standard input, as of "
+                      "--set; with --mode, mode=hold keeps the images at hand");
+#endif
     command->callback([=, &exit_status] {
         SessionOptions options;
         options.pace = Pace::own_pace;
@@ -89,14 +94,14 @@ void add_run(CLI::App& app, int& exit_status) {
             exit_status = usage(chosen.error());
             return;
         }
+        choose_decoding(run->stream, options);
         if (const auto set = apply_settings(run->stream.changes, options.decode); !set) {
             exit_status = usage(set.error());
             return;
         }
-        choose_decoding(run->stream, options);
         auto session = open(*run, options);
         if (session) {
-            if (const auto possible = check_metric(*session, run->stream); !possible) {
+            if (const auto possible = check_stream(*session, run->stream); !possible) {
                 exit_status = usage(possible.error());
                 return;
             }

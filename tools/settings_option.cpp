@@ -23,8 +23,9 @@ std::string range_of(const DecodeField& field) {
 std::string all_settings() {
     std::string text = "Changes a setting of the decoder:";
     for (const DecodeField& field : decode_fields()) {
-        text += fmt::format("\n{}: {} ({}; else {})", field.name, field.summary, range_of(field),
-                            text_of(field, DecodeSettings{}));
+        text += fmt::format("\n{}: {}{} ({}; else {})", field.name,
+                            field.use == FieldUse::paper ? "unwrapping in space: " : "",
+                            field.summary, range_of(field), text_of(field, DecodeSettings{}));
     }
     return text;
 }
@@ -48,6 +49,34 @@ Result<void> apply_settings(const std::vector<std::string>& changes, DecodeSetti
                                  std::string_view(change).substr(equals + 1));
             !set) {
             return Error{set.error().code, "--set: " + set.error().message};
+        }
+    }
+    return {};
+}
+
+Result<void> check_settings(const std::vector<std::string>& changes, DecodeMethod method) {
+    const auto refuse = [](const std::string& change, const char* why) {
+        return Error{ErrorCode::invalid_argument, "--set " + change + ": " + why};
+    };
+    for (const std::string& change : changes) {
+        const std::string name = change.substr(0, change.find('='));
+        for (const DecodeField& field : decode_fields()) {
+            if (name != field.name) {
+                continue;
+            }
+            if (method == DecodeMethod::automatic) {
+                return refuse(change, "the source has no fringes to decode; leave it out");
+            }
+            if (method == DecodeMethod::pattern && field.use == FieldUse::paper) {
+                return refuse(change,
+                              "is for fringes that are unwrapped in space; leave it out, or let "
+                              "run or replay unwrap so with --mode default");
+            }
+            if (method == DecodeMethod::paper && field.use == FieldUse::pattern) {
+                return refuse(change,
+                              "means nothing where fringes are unwrapped in space, as without a "
+                              "rig or with --mode; leave it out");
+            }
         }
     }
     return {};

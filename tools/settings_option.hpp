@@ -6,6 +6,7 @@
 
 #include <CLI/App.hpp>
 #include <xtrack/decode_settings.hpp>
+#include <xtrack/session.hpp>
 
 namespace xtrack::tools {
 
@@ -16,5 +17,11 @@ void add_settings_option(CLI::App& command, std::vector<std::string>& changes);
 /// @errors invalid_argument: what is no NAME=VALUE, a name that is none, a value out of range
 [[nodiscard]] Result<void> apply_settings(const std::vector<std::string>& changes,
                                           DecodeSettings& settings);
+
+/// Whether all of them mean something to what decodes.
+/// @param method Session::method(), or how a command decodes
+/// @errors invalid_argument: one that would do nothing
+[[nodiscard]] Result<void> check_settings(const std::vector<std::string>& changes,
+                                          DecodeMethod method);
 
 }  // namespace xtrack::tools

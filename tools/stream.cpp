@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "tools/control.hpp"
 #include "tools/interrupt.hpp"
 #include "tools/progress.hpp"
 #include "tools/settings_option.hpp"
@@ -94,7 +95,9 @@ void add_stream_options(CLI::App& command, StreamOptions& options) {
                 options.mode = name == "burst" ? CaptureMode::burst : CaptureMode::sliding;
             },
             "Unwrap fringes in space, as recordings without rig.yaml always are: default (every "
-            "image, with those before it) or burst (whole sets of new images)")
+            "image, with those before it) or burst (whole sets of new images); motion is off "
+            "unless "
+            "--set says otherwise")
         ->check(CLI::IsMember({"default", "burst"}));
     command.add_flag("--without-rig", options.without_rig,
                      "Fringes: as if there were no rig.yaml; depth is relative");
@@ -130,9 +133,12 @@ void choose_decoding(const StreamOptions& stream, SessionOptions& options) {
     options.use_rig = !stream.without_rig;
     if (stream.mode) {
         options.method = DecodeMethod::paper;
-        options.paper.mode = *stream.mode;
+        options.decode.motion = MotionHandling::off;  // each image for itself, as in the paper
+        options.decode.mode = *stream.mode;
     }
 }
+
+namespace {
 
 Result<void> check_metric(const Session& session, const StreamOptions& options) {
     const bool pinch =
@@ -151,6 +157,22 @@ Result<void> check_metric(const Session& session, const StreamOptions& options) 
                            "add the calibration, or choose from swipe, push, wave"};
     }
     return {};
+}
+
+}  // namespace
+
+Result<void> check_stream(const Session& session, const StreamOptions& options) {
+    if (auto means_something = check_settings(options.changes, session.method());
+        !means_something) {
+        return means_something;
+    }
+    if (session.decode_settings().mode == CaptureMode::hold) {
+        return Error{
+            ErrorCode::invalid_argument,
+            "--set mode=hold: there are no images to hold yet; run --control takes it as a "
+            "line while it runs"};
+    }
+    return check_metric(session, options);
 }
 
 int play(Session& session, const StreamOptions& options, Pace pace, bool whole, std::size_t items) {
@@ -175,6 +197,10 @@ int play(Session& session, const StreamOptions& options, Pace pace, bool whole, 
         print_error(
             "xtrack: without a rig.yaml depth is relative; lengths are in eightieths of a palm's "
             "width, not in mm, and pinches are not looked for\n");
+    }
+    Control control;
+    if (options.control) {
+        session.subscribe_pipeline([&](const PipelineView& view) { control.poll(session, view); });
     }
     // A bar between lines of events on the same screen would help nobody.
     std::optional<Progress> progress;

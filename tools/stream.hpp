@@ -24,6 +24,7 @@ struct StreamOptions {
     bool json = false;
     std::optional<CaptureMode> mode;  ///< wanted: fringes are unwrapped in space
     bool without_rig = false;
+    bool control = false;  ///< settings are read from standard input while it runs
 };
 
 void add_stream_options(CLI::App& command, StreamOptions& options);
@@ -36,10 +37,11 @@ void add_stream_options(CLI::App& command, StreamOptions& options);
 /// What `--mode` and `--without-rig` ask for, if they do.
 void choose_decoding(const StreamOptions& stream, SessionOptions& options);
 
-/// What a source without a calibration allows: nothing that compares what is smaller than a hand.
-/// @errors unsupported: such a gesture was asked for; invalid_argument: there is no calibration to
-///         do without
-[[nodiscard]] Result<void> check_metric(const Session& session, const StreamOptions& options);
+/// Whether the source allows what was asked for.
+/// @errors unsupported: a gesture that compares what is smaller than a hand, without a calibration;
+///         invalid_argument: there is no calibration to do without, or a setting that would do
+///         nothing
+[[nodiscard]] Result<void> check_stream(const Session& session, const StreamOptions& options);
 
 /// Runs a session to its end and prints. @param whole what is interrupted is not the whole answer:
 /// a recording's @param items how many the source holds, for a progress bar; 0 = not known

@@ -22,7 +22,7 @@ ColourPeriod colour_period(const SinePlan& sine) {
 
 }  // namespace
 
-Result<void> DepthDecoder::Impl::prepare_colours(const Rig& rig) {
+Result<void> DepthDecoder::Impl::prepare_colours() {
     const SinePlan& fine = plan.sines.back();
     std::array<double, 3> phases{};
     std::copy_n(fine.phases_rad.begin(), phases.size(), phases.begin());

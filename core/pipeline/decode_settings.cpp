@@ -8,6 +8,8 @@
 #include <string>
 #include <type_traits>
 
+#include <xtrack/image.hpp>
+
 #include "core/base/text.hpp"
 
 namespace xtrack {
@@ -18,6 +20,7 @@ constexpr std::array<const char*, 5> kTaps{"automatic", "least_squares", "three_
                                            "three_plus_two", "four_plus_one"};
 constexpr std::array<const char*, 3> kOrders{"automatic", "depth_image", "none"};
 constexpr std::array<const char*, 3> kMotions{"off", "mask", "follow"};
+constexpr std::array<const char*, 3> kModes{"default", "burst", "hold"};
 
 // One way to read and write every type of field.
 template <auto kMember>
@@ -35,43 +38,55 @@ void set(DecodeSettings& settings, double value) {
 }
 
 template <auto kMember>
-constexpr DecodeField number(const char* name, const char* unit, double least, double most,
-                             const char* summary) {
-    return {name, unit, summary, least, most, false, {}, get<kMember>, set<kMember>};
+constexpr DecodeField number(FieldUse use, const char* name, const char* unit, double least,
+                             double most, const char* summary) {
+    return {name, unit, summary, least, most, false, {}, get<kMember>, set<kMember>, use};
 }
 template <auto kMember>
-constexpr DecodeField whole(const char* name, const char* unit, double least, double most,
-                            const char* summary) {
-    return {name, unit, summary, least, most, true, {}, get<kMember>, set<kMember>};
+constexpr DecodeField whole(FieldUse use, const char* name, const char* unit, double least,
+                            double most, const char* summary) {
+    return {name, unit, summary, least, most, true, {}, get<kMember>, set<kMember>, use};
 }
 template <auto kMember>
-constexpr DecodeField choice(const char* name, std::span<const char* const> choices,
+constexpr DecodeField choice(FieldUse use, const char* name, std::span<const char* const> choices,
                              const char* summary) {
-    return {name, "",      summary,      0.0,         static_cast<double>(choices.size() - 1),
-            true, choices, get<kMember>, set<kMember>};
+    const auto most = static_cast<double>(choices.size() - 1);
+    return {name, "", summary, 0.0, most, true, choices, get<kMember>, set<kMember>, use};
 }
 
 using S = DecodeSettings;
-constexpr std::array<DecodeField, 13> kFields{{
-    number<&S::min_modulation>("min_modulation", "grey levels", 0.0, 127.0,
+constexpr auto kBoth = FieldUse::both;
+constexpr auto kPattern = FieldUse::pattern;
+constexpr auto kPaper = FieldUse::paper;
+constexpr std::array<DecodeField, 17> kFields{{
+    number<&S::min_modulation>(kBoth, "min_modulation", "grey levels", 0.0, 127.0,
                                "pixels of less fringe amplitude are masked"),
-    choice<&S::mask_saturated>("mask_saturated", kSwitch, "mask pixels that reach 255"),
-    choice<&S::taps>("taps", kTaps, "how images of one period become a phase"),
-    choice<&S::order>("order", kOrders, "where the fringe order comes from"),
-    number<&S::order_tolerance>("order_tolerance", "periods", 0.05, 0.5,
+    choice<&S::mask_saturated>(kBoth, "mask_saturated", kSwitch, "mask pixels that reach 255"),
+    choice<&S::taps>(kPattern, "taps", kTaps, "how images of one period become a phase"),
+    choice<&S::order>(kPattern, "order", kOrders, "where the fringe order comes from"),
+    number<&S::order_tolerance>(kPattern, "order_tolerance", "periods", 0.05, 0.5,
                                 "pixels whose order is less sure are masked"),
-    number<&S::gray_edge_guard>("gray_edge_guard", "of white - black", 0.0, 0.45,
+    number<&S::gray_edge_guard>(kPattern, "gray_edge_guard", "of white - black", 0.0, 0.45,
                                 "Gray code bits nearer to their threshold are masked"),
-    choice<&S::motion>("motion", kMotions, "what is done about things that move"),
-    number<&S::motion_tolerance>("motion_tolerance", "amplitudes", 0.05, 10.0,
+    choice<&S::motion>(kBoth, "motion", kMotions, "what is done about things that move"),
+    number<&S::motion_tolerance>(kBoth, "motion_tolerance", "amplitudes", 0.05, 10.0,
                                  "pixels that change by more between two cycles are masked"),
-    whole<&S::max_motion_px>("max_motion_px", "px", 8.0, 400.0, "largest move within a cycle"),
-    number<&S::read_noise_levels>("read_noise_levels", "grey levels", 0.0, 20.0,
+    whole<&S::max_motion_px>(kBoth, "max_motion_px", "px", 8.0, 400.0,
+                             "largest move within a cycle"),
+    number<&S::read_noise_levels>(kPattern, "read_noise_levels", "grey levels", 0.0, 20.0,
                                   "the camera's noise in the dark, rms"),
-    number<&S::electrons_per_level>("electrons_per_level", "electrons", 1.0, 1e5,
+    number<&S::electrons_per_level>(kPattern, "electrons_per_level", "electrons", 1.0, 1e5,
                                     "light that makes one grey level"),
-    choice<&S::keep_maps>("keep_maps", kSwitch, "keep phase, modulation and the like"),
-    whole<&S::threads>("threads", "", 1.0, 16.0, "threads that share the rows of an image"),
+    choice<&S::keep_maps>(kBoth, "keep_maps", kSwitch, "keep phase, modulation and the like"),
+    whole<&S::threads>(kBoth, "threads", "", 1.0, 16.0, "threads that share the rows of an image"),
+    choice<&S::mode>(kPaper, "mode", kModes, "which images a decode is made of"),
+    number<&S::step_limit_rad>(kPaper, "step_limit_rad", "rad", 0.1, 3.1,
+                               "steeper steps between neighbours part surfaces"),
+    number<&S::min_support>(kPaper, "min_support", "of their contact", 0.0, 1.0,
+                            "surfaces that agree along less are not joined"),
+    whole<&S::min_component_px>(kPaper, "min_component_px", "px", 1.0,
+                                static_cast<double>(kMaxImagePixels),
+                                "surfaces of fewer pixels are masked"),
 }};
 
 std::string what_it_takes(const DecodeField& field) {

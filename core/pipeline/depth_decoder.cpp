@@ -43,7 +43,7 @@ DepthDecoder::Impl::Scratch::Scratch(int width) : grey(width, kMostImages) {
     rays.resize(2 * width, 1);
 }
 
-Result<void> DepthDecoder::Impl::prepare(const Rig& rig) {
+Result<void> DepthDecoder::Impl::prepare() {
     team.emplace(settings.threads);
     for (int member = 0; member < team->members(); ++member) {
         scratches.emplace_back(size.width);
@@ -66,7 +66,7 @@ Result<void> DepthDecoder::Impl::prepare(const Rig& rig) {
                 : 1.0;
     }
     if (plan.colour()) {
-        if (auto made = prepare_colours(rig); !made) {
+        if (auto made = prepare_colours(); !made) {
             return made.error();
         }
     }
@@ -157,23 +157,28 @@ DecodeStatus DepthDecoder::Impl::push(const FramePtr& frame) noexcept {
         // Of use for the order of the next image, but no phase that was not seen before.
         return {DecodeState::need_more, RejectReason::none};
     }
+    last_decoded = frame;
+    decode(*frame);
+    if (palette) {
+        palette->learn();
+    }
+    return {DecodeState::depth_ready, RejectReason::none};
+}
+
+void DepthDecoder::Impl::decode(const Frame& newest) noexcept {
     moving_depth_mm = motion && motion->moving() ? find_moving_depth_mm() : 0.0;
-    oldest_image = frame->stamp;
+    oldest_image = newest.stamp;
     if (palette) {
         tell_surfaces();
     }
     if (plan.carrier()) {
-        find_carrier(*frame);
+        find_carrier(newest);
     }
     const std::span<const int> edges = window.row_edges(size.height);
     for (std::size_t n = 0; n + 1 < edges.size(); ++n) {
         decode_rows(edges[n], edges[n + 1]);
     }
-    if (palette) {
-        palette->learn();
-    }
-    register_depth(*frame);
-    return {DecodeState::depth_ready, RejectReason::none};
+    register_depth(newest);
 }
 
 void DepthDecoder::Impl::find_carrier(const Frame& frame) noexcept {
@@ -264,7 +269,9 @@ Result<DepthDecoder> DepthDecoder::create(const Rig& rig, const PatternSequence&
     }
     return base::setting_up("DepthDecoder::create", [&]() -> Result<DepthDecoder> {
         auto impl = std::make_unique<Impl>(*std::move(plan), settings, image);
-        if (auto ready = impl->prepare(rig); !ready) {
+        impl->rig = rig;
+        impl->patterns = patterns;
+        if (auto ready = impl->prepare(); !ready) {
             return ready.error();
         }
         return DepthDecoder(std::move(impl));
@@ -277,6 +284,47 @@ DepthDecoder& DepthDecoder::operator=(DepthDecoder&&) noexcept = default;
 DepthDecoder::~DepthDecoder() = default;
 
 DecodeStatus DepthDecoder::push(const FramePtr& frame) noexcept { return impl_->push(frame); }
+
+DecodeStatus DepthDecoder::decode_again() noexcept {
+    if (!impl_->last_decoded) {
+        return {DecodeState::need_more, RejectReason::none};
+    }
+    impl_->decode(*impl_->last_decoded);
+    return {DecodeState::depth_ready, RejectReason::none};
+}
+
+Result<void> DepthDecoder::set_settings(const DecodeSettings& settings) {
+    const DecodeSettings& now = impl_->settings;
+    const bool same_maps = settings.taps == now.taps && settings.order == now.order &&
+                           settings.motion == now.motion &&
+                           settings.max_motion_px == now.max_motion_px &&
+                           settings.keep_maps == now.keep_maps && settings.threads == now.threads;
+    if (same_maps) {
+        if (auto valid = validate(settings); !valid) {
+            return valid;
+        }
+        impl_->settings = settings;
+        return {};
+    }
+    auto made = create(impl_->rig, impl_->patterns, impl_->size, settings);
+    if (!made) {
+        return made.error();
+    }
+    Impl& fresh = *made->impl_;
+    fresh.window = std::move(impl_->window);
+    fresh.last_decoded = std::move(impl_->last_decoded);
+    fresh.last_stamp = impl_->last_stamp;
+    if (!fresh.order_px.empty() && !impl_->order_px.empty()) {
+        fresh.order_px = std::move(impl_->order_px);
+    }
+    if (fresh.palette) {
+        fresh.palette = std::move(impl_->palette);
+    }
+    impl_ = std::move(made->impl_);
+    return {};
+}
+
+const DecodeSettings& DepthDecoder::settings() const noexcept { return impl_->settings; }
 const DepthFrame& DepthDecoder::depth() const noexcept { return impl_->depth; }
 const PhaseMap& DepthDecoder::phase() const noexcept { return impl_->phase_map; }
 const Image<float>& DepthDecoder::coordinate_px() const noexcept { return impl_->coordinate; }
@@ -305,6 +353,7 @@ Result<void> DepthDecoder::set_order_depth(ImageView<const std::uint16_t> depth,
 
 void DepthDecoder::reset() noexcept {
     impl_->window.clear();
+    impl_->last_decoded.reset();
     if (impl_->motion) {
         impl_->motion->clear();
     }

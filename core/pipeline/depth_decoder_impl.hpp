@@ -48,8 +48,9 @@ struct DepthDecoder::Impl {
         int row_of_taps = -1;
     };
 
-    Result<void> prepare(const Rig& rig);
+    Result<void> prepare();
     DecodeStatus push(const FramePtr& frame) noexcept;
+    void decode(const Frame& newest) noexcept;
     void register_depth(const Frame& newest) noexcept;
 
     void decode_rows(int begin, int end) noexcept;
@@ -78,7 +79,7 @@ struct DepthDecoder::Impl {
         int moved_dx = 0;
         int cell_y = 0;  // of the motion's cells
     };
-    Result<void> prepare_colours(const Rig& rig);
+    Result<void> prepare_colours();
     void tell_surfaces() noexcept;
     void choose_surfaces() noexcept;
     void draw_borders(int first_cell_y, int last_cell_y) noexcept;
@@ -103,6 +104,8 @@ struct DepthDecoder::Impl {
                         const RowOut& out) noexcept;
     void mask_disagreeing(int y, int begin, int end, bool follow, const RowOut& out) noexcept;
 
+    Rig rig;  // this and the next: to be made anew
+    PatternSequence patterns;
     DecodeSettings settings;
     DecodePlan plan;
     Size size;
@@ -117,7 +120,8 @@ struct DepthDecoder::Impl {
     OrderReference order;
     Image<float> order_px;  // from set_order_depth()
     std::optional<Stamp> last_stamp;
-    Stamp oldest_image;  // of those that the depth at hand is made of
+    FramePtr last_decoded;  // the newest of the last decode
+    Stamp oldest_image;     // of those that the depth at hand is made of
     DepthFrame depth;
     PhaseMap phase_map;
     Image<float> coordinate;

@@ -16,7 +16,7 @@ constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 Error bad(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
 
-SpatialUnwrapSettings spatial_of(const PaperSettings& settings) {
+SpatialUnwrapSettings spatial_of(const DecodeSettings& settings) {
     return {settings.step_limit_rad, settings.min_support, settings.min_component_px};
 }
 
@@ -30,17 +30,15 @@ Pinhole nominal_camera(Size image) {
     return camera;
 }
 
-// For periods that are one image, and for steps whose motion is followed. What is dark or clipped
-// is masked here, by settings that change.
-Result<DepthDecoder> phase_decoder(const PatternSequence& patterns, Size image, const Rig* rig,
-                                   const PaperSettings& paper, bool followed) {
-    DecodeSettings settings;
+// What is dark is masked here.
+DecodeSettings settings_of_phases(const DecodeSettings& paper, bool followed) {
+    DecodeSettings settings = paper;
+    settings.taps = PhaseTaps::automatic;
     settings.order = OrderSource::none;
     settings.motion = followed ? paper.motion : MotionHandling::off;
-    settings.mask_saturated = paper.mask_saturated;
     settings.keep_maps = true;
     settings.min_modulation = 0.0;
-    return DepthDecoder::create(rig != nullptr ? *rig : Rig{}, patterns, image, settings);
+    return settings;
 }
 
 // True where projector coordinates fall as the camera's rise, at any depth.
@@ -56,18 +54,7 @@ bool falls(const Triangulation& geometry, Axis axis, Size image) {
 
 }  // namespace
 
-Result<void> validate(const PaperSettings& settings) {
-    if (!(settings.min_modulation >= 0.0 && settings.min_modulation <= 127.0)) {
-        return bad("paper settings: min_modulation is " + std::to_string(settings.min_modulation) +
-                   "; give 0 to 127 grey levels");
-    }
-    if (auto valid = validate(spatial_of(settings)); !valid) {
-        return bad("paper settings: " + valid.error().message);
-    }
-    return {};
-}
-
-PaperDecoder::Impl::Impl(DecodePlan decode_plan, Size image, const PaperSettings& paper_settings,
+PaperDecoder::Impl::Impl(DecodePlan decode_plan, Size image, const DecodeSettings& paper_settings,
                          SpatialUnwrapper made, std::optional<Triangulation> rig_geometry,
                          const Pinhole& camera)
     : settings(paper_settings),
@@ -108,7 +95,7 @@ PaperDecoder::Impl::Impl(DecodePlan decode_plan, Size image, const PaperSettings
 }
 
 Result<PaperDecoder> PaperDecoder::create(const PatternSequence& patterns, Size image,
-                                          const PaperSettings& settings, const Rig* rig) {
+                                          const DecodeSettings& settings, const Rig* rig) {
     if (auto valid = validate(settings); !valid) {
         return valid.error();
     }
@@ -134,18 +121,6 @@ Result<PaperDecoder> PaperDecoder::create(const PatternSequence& patterns, Size 
                      "in space; use sines"};
     }
     const bool metric = rig != nullptr && rig->projector.has_value();
-    std::optional<DepthDecoder> phases;
-    const bool steps = plan->sines.back().kind == PeriodKind::steps;
-    // With a rig DepthDecoder is there for hands that move.
-    const bool followed = steps && !metric && patterns.patterns.size() == 3 &&
-                          settings.motion == MotionHandling::follow;
-    if (!steps || followed) {
-        auto made = phase_decoder(patterns, image, rig, settings, followed);
-        if (!made) {
-            return made.error();
-        }
-        phases = *std::move(made);
-    }
     if (metric && rig->projector->size != patterns.projector_size) {
         return bad("projector_size of the rig and of the pattern sequence differ");
     }
@@ -175,12 +150,45 @@ Result<PaperDecoder> PaperDecoder::create(const PatternSequence& patterns, Size 
                                            rig != nullptr ? rig->camera : nominal_camera(image));
         impl->carrier_falls =
             impl->geometry && impl->plan.carrier() && falls(*impl->geometry, patterns.axis, image);
-        impl->phases = std::move(phases);
-        if (settings.motion != MotionHandling::off) {
-            impl->scene.emplace(image);
+        impl->patterns = patterns;
+        if (rig != nullptr) {
+            impl->rig = *rig;
+        }
+        if (auto ready = impl->prepare_motion(settings); !ready) {
+            return ready.error();
         }
         return PaperDecoder(std::move(impl));
     });
+}
+
+// For periods that are one image, and for steps whose motion is followed: with a rig DepthDecoder
+// is there for hands that move.
+Result<void> PaperDecoder::Impl::prepare_motion(const DecodeSettings& wanted) {
+    const bool steps = period->kind == PeriodKind::steps;
+    const bool followed =
+        steps && !geometry && plan.pattern_count == 3 && wanted.motion == MotionHandling::follow;
+    const DecodeSettings of_phases = settings_of_phases(wanted, followed);
+    if (steps && !followed) {
+        phases.reset();
+        from_phases = false;
+    } else if (phases) {
+        phases_are_stale = phases_are_stale || phases->settings() != of_phases;
+        if (auto set = phases->set_settings(of_phases); !set) {
+            return set;
+        }
+    } else {
+        auto made = DepthDecoder::create(rig, patterns, size, of_phases);
+        if (!made) {
+            return made.error();
+        }
+        phases = *std::move(made);
+    }
+    if (wanted.motion == MotionHandling::off) {
+        scene.reset();
+    } else if (!scene) {
+        scene.emplace(size);
+    }
+    return {};
 }
 
 DecodeStatus PaperDecoder::Impl::push(const FramePtr& frame) noexcept {
@@ -218,6 +226,7 @@ DecodeStatus PaperDecoder::Impl::push(const FramePtr& frame) noexcept {
     const bool burst = settings.mode == CaptureMode::burst;
     if (phases && !(steps && burst)) {  // a burst is of its own images, whatever was before it
         const DecodeStatus status = phases->push(frame);
+        phases_are_stale = false;
         phase_ready = status.state == DecodeState::depth_ready;
         if (!phase_ready && !steps) {
             return status;
@@ -250,15 +259,23 @@ DecodeStatus PaperDecoder::decode_again() noexcept {
     if (!impl_->decoded) {
         return {DecodeState::need_more, RejectReason::none};
     }
+    if (impl_->from_phases && std::exchange(impl_->phases_are_stale, false)) {
+        (void)impl_->phases->decode_again();
+    }
     impl_->decode(false);
     return {DecodeState::depth_ready, RejectReason::none};
 }
 
-Result<void> PaperDecoder::set_settings(const PaperSettings& settings) {
+Result<void> PaperDecoder::set_settings(const DecodeSettings& settings) {
     if (auto valid = validate(settings); !valid) {
         return valid;
     }
-    if (auto set = impl_->unwrapper.set_settings(spatial_of(settings)); !set) {
+    auto set = base::setting_up("PaperDecoder::set_settings",
+                                [&] { return impl_->prepare_motion(settings); });
+    if (set) {
+        set = impl_->unwrapper.set_settings(spatial_of(settings));
+    }
+    if (!set) {
         return set;
     }
     if (settings.mode == CaptureMode::burst && impl_->settings.mode != CaptureMode::burst) {
@@ -300,10 +317,11 @@ int PaperDecoder::frames_needed() const noexcept {
     return static_cast<int>(impl_->period->patterns.size());
 }
 
-const PaperSettings& PaperDecoder::settings() const noexcept { return impl_->settings; }
+const DecodeSettings& PaperDecoder::settings() const noexcept { return impl_->settings; }
 const DepthFrame& PaperDecoder::depth() const noexcept { return impl_->depth; }
 ImageView<const float> PaperDecoder::points_mm() const noexcept {
-    return impl_->settings.points ? std::as_const(impl_->points).view() : ImageView<const float>{};
+    return impl_->settings.keep_maps ? std::as_const(impl_->points).view()
+                                     : ImageView<const float>{};
 }
 const PhaseMap& PaperDecoder::phase() const noexcept { return impl_->phase_map; }
 const Image<float>& PaperDecoder::unwrapped_rad() const noexcept { return impl_->unwrapped; }

@@ -20,9 +20,10 @@ namespace xtrack {
 
 // paper_decoder.cpp: set-up, frames and modes; paper_rows.cpp: what happens to the images.
 struct PaperDecoder::Impl {
-    Impl(DecodePlan decode_plan, Size image, const PaperSettings& paper_settings,
+    Impl(DecodePlan decode_plan, Size image, const DecodeSettings& paper_settings,
          SpatialUnwrapper made, std::optional<Triangulation> rig_geometry, const Pinhole& camera);
 
+    Result<void> prepare_motion(const DecodeSettings& wanted);
     DecodeStatus push(const FramePtr& frame) noexcept;
     Result<void> learn_background();
 
@@ -54,7 +55,9 @@ struct PaperDecoder::Impl {
     void mask_results() noexcept;
     void stamp_results() noexcept;
 
-    PaperSettings settings;
+    Rig rig;  // this and the next: to be made anew
+    PatternSequence patterns;
+    DecodeSettings settings;
     DecodePlan plan;
     const SinePlan* period;          // of plan: the one that is used
     std::vector<std::uint8_t> used;  // by pattern
@@ -67,8 +70,9 @@ struct PaperDecoder::Impl {
     /// Of periods that are one image, in colours or in space, and of steps whose motion is
     /// followed; other steps are decoded here.
     std::optional<DepthDecoder> phases;
-    bool from_phases = false;    // what was decoded last took its phase from there
-    bool carrier_falls = false;  // the phase of a carrier falls with the pixel's index
+    bool phases_are_stale = false;  // they were decoded under other settings
+    bool from_phases = false;       // what was decoded last took its phase from there
+    bool carrier_falls = false;     // the phase of a carrier falls with the pixel's index
     /// Where what moves is told from what stands still.
     std::optional<StillScene> scene;
 

@@ -202,7 +202,7 @@ void PaperDecoder::Impl::write_depth_row(int y) noexcept {
     row.depth = depth.depth.row(y);
     row.quality = depth.quality.row(y);
     depth_row(row);
-    if (settings.points) {
+    if (settings.keep_maps) {
         PointsRow of;
         rays.prepare_row(y, of);
         of.count = size.width;

@@ -21,6 +21,15 @@ Mat4d facing_the_user() {
     return m;
 }
 
+Result<void> needs_order(const DecodeSettings& settings) {
+    if (settings.order != OrderSource::automatic) {
+        return Error{ErrorCode::invalid_argument,
+                     "decode settings: order must be automatic, as a session needs depth and has "
+                     "no other to begin with"};
+    }
+    return {};
+}
+
 /// Every image is a phase of its own, which no motion tears.
 bool never_changes(const PatternSequence& patterns) { return patterns.patterns.size() == 1; }
 
@@ -38,10 +47,8 @@ Result<Processor> Processor::for_frames(const Rig& rig, const PatternSequence& p
         (options.method == DecodeMethod::automatic && !has_rig)) {
         return for_paper(rig, patterns, options);
     }
-    if (options.decode.order != OrderSource::automatic) {
-        return Error{ErrorCode::invalid_argument,
-                     "decode settings: order must be automatic, as a session needs depth and has "
-                     "no other to begin with"};
+    if (auto possible = needs_order(options.decode); !possible) {
+        return possible.error();
     }
     auto decoder = DepthDecoder::create(rig, patterns, rig.camera.size, options.decode);
     if (!decoder && options.method == DecodeMethod::automatic && never_changes(patterns)) {
@@ -60,13 +67,8 @@ Result<Processor> Processor::for_frames(const Rig& rig, const PatternSequence& p
 Result<Processor> Processor::for_paper(const Rig& rig, const PatternSequence& patterns,
                                        const SessionOptions& options) {
     const bool metric = rig.projector.has_value();
-    PaperSettings settings = options.paper;
-    settings.points = false;
-    if (options.method == DecodeMethod::automatic || never_changes(patterns)) {
-        settings.motion = options.decode.motion;
-    }
     auto decoder =
-        PaperDecoder::create(patterns, rig.camera.size, settings, metric ? &rig : nullptr);
+        PaperDecoder::create(patterns, rig.camera.size, options.decode, metric ? &rig : nullptr);
     if (!decoder) {
         return decoder.error();
     }
@@ -114,6 +116,34 @@ Result<Processor> Processor::for_hands(const SessionOptions& options) {
         return recogniser.error();
     }
     return Processor(std::move(*recogniser), Mat4d::Identity());
+}
+
+DecodeMethod Processor::method() const noexcept {
+    if (paper_) {
+        return DecodeMethod::paper;
+    }
+    return decoder_ ? DecodeMethod::pattern : DecodeMethod::automatic;
+}
+
+Result<void> Processor::set_decode_settings(const DecodeSettings& settings) {
+    if (paper_) {
+        return paper_->set_settings(settings);
+    }
+    if (!decoder_) {
+        return Error{ErrorCode::unsupported,
+                     "decode settings: the source has no fringes, nothing is decoded"};
+    }
+    if (auto possible = needs_order(settings); !possible) {
+        return possible;
+    }
+    return decoder_->set_settings(settings);
+}
+
+DecodeSettings Processor::decode_settings() const noexcept {
+    if (paper_) {
+        return paper_->settings();
+    }
+    return decoder_ ? decoder_->settings() : DecodeSettings{};
 }
 
 bool Processor::decode(const FramePtr& frame, PipelineView& view) {

@@ -35,6 +35,9 @@ class Processor {
     /// Tells the state machines that time went on without an item; `now` is on the items' clock.
     std::span<const GestureEvent> advance(Stamp now);
     [[nodiscard]] PaperDecoder* paper() noexcept { return paper_ ? &*paper_ : nullptr; }
+    [[nodiscard]] DecodeMethod method() const noexcept;
+    Result<void> set_decode_settings(const DecodeSettings& settings);
+    [[nodiscard]] DecodeSettings decode_settings() const noexcept;
     [[nodiscard]] bool metric() const noexcept { return !relative_; }
     [[nodiscard]] GestureRecogniser& recogniser() noexcept { return recogniser_; }
 

@@ -214,14 +214,14 @@ void Session::stop() noexcept {
 
 bool Session::metric() const noexcept { return impl_->processor.metric(); }
 
-Result<void> Session::set_paper_settings(const PaperSettings& settings) {
-    PaperDecoder* paper = impl_->processor.paper();
-    if (paper == nullptr) {
-        return no_paper_decoder();
-    }
-    PaperSettings of_session = settings;
-    of_session.points = paper->settings().points;
-    return paper->set_settings(of_session);
+DecodeMethod Session::method() const noexcept { return impl_->processor.method(); }
+
+Result<void> Session::set_decode_settings(const DecodeSettings& settings) {
+    return impl_->processor.set_decode_settings(settings);
+}
+
+DecodeSettings Session::decode_settings() const noexcept {
+    return impl_->processor.decode_settings();
 }
 
 Result<void> Session::learn_background() {

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 constexpr std::chrono::milliseconds kPoll{20};
 
 pid_t start(const std::vector<std::string>& arguments, const fs::path& folder,
-            const char* out = "stdout") {
+            const char* out = "stdout", const char* in = "/dev/null") {
     std::vector<std::string> words = {XTRACK_COMMAND};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
@@ -38,7 +38,7 @@ pid_t start(const std::vector<std::string>& arguments, const fs::path& folder,
     posix_spawn_file_actions_t files;
     posix_spawn_file_actions_init(&files);
     posix_spawn_file_actions_addchdir_np(&files, folder.c_str());
-    posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&files, STDIN_FILENO, in, O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, out, O_WRONLY | O_CREAT, 0600);
     posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "stderr", O_WRONLY | O_CREAT, 0600);
     pid_t child = 0;
@@ -66,9 +66,9 @@ Outcome xtrack_command(const std::vector<std::string>& arguments, const char* ou
 
 Outcome interrupted_command(const std::vector<std::string>& arguments, int signal,
                             const std::function<bool(const std::string& out)>& ready,
-                            std::chrono::milliseconds patience) {
+                            std::chrono::milliseconds patience, const char* in) {
     const TemporaryFolder folder;
-    const pid_t child = start(arguments, folder.path());
+    const pid_t child = start(arguments, folder.path(), "stdout", in);
     for (auto waited = kPoll; waited < patience; waited += kPoll) {
         std::this_thread::sleep_for(kPoll);
         if (ready(text_of(folder.path() / "stdout"))) {

@@ -21,10 +21,11 @@ struct Outcome {
 Outcome xtrack_command(const std::vector<std::string>& arguments, const char* out = "stdout");
 
 /// The same, with `signal` sent once `ready` says so of what is on stdout, or after `patience` in
-/// any case.
+/// any case. @param in what is its stdin
 Outcome interrupted_command(const std::vector<std::string>& arguments, int signal,
                             const std::function<bool(const std::string& out)>& ready,
-                            std::chrono::milliseconds patience = std::chrono::seconds(20));
+                            std::chrono::milliseconds patience = std::chrono::seconds(20),
+                            const char* in = "/dev/null");
 
 /// One line that begins with the command's name and ends there.
 bool is_one_line_message(const std::string& text);

@@ -54,6 +54,44 @@ TEST(Replay, ToAFullDiskFails) {
     EXPECT_TRUE(is_one_line_message(outcome.err)) << outcome.err;
 }
 
+TEST(Run, SettingsChangeWhileItRuns) {
+    const TemporaryFolder folder;
+    const auto lines = folder.path() / "lines";
+    std::string text =
+        "mode=hold\nmode=default\n\nmin_modulation\ntaps=least_squares\nmin_support=2\n" +
+        std::string(300, 'x') + "\n";
+    for (int n = 0; n < 200; ++n) {  // a few are read with each image
+        text += "min_modulation=8\n";
+    }
+    set_text(lines, text + "mode=hold\nmin_modulation=127\nmin_modulation=4");
+    const Outcome outcome = interrupted_command(
+        {"run", "--mode", "default", "--events", "none", "--control"}, SIGINT,
+        [](const std::string&) { return false; }, std::chrono::seconds(2), lines.c_str());
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("min_modulation=8: from the next image on\n"));
+    EXPECT_THAT(outcome.err, HasSubstr("min_modulation: give NAME=VALUE"));
+    EXPECT_THAT(outcome.err, HasSubstr("taps=least_squares: means nothing where"));
+    EXPECT_THAT(outcome.err, HasSubstr("min_support is '2', must be a number from 0 to 1"));
+    EXPECT_THAT(outcome.err, HasSubstr("give NAME=VALUE"));
+    EXPECT_THAT(outcome.err, HasSubstr("mode=hold: nothing was decoded yet"));
+    EXPECT_THAT(outcome.err, HasSubstr("min_modulation=127: 0.0 % of the pixels have depth"));
+    EXPECT_THAT(outcome.err,
+                testing::ContainsRegex("min_modulation=4: [5-9][0-9]\\.[0-9] % of the pixels"));
+}
+
+TEST(Replay, ASettingThatWouldDoNothingIsRefused) {
+    const auto refused = [](const std::vector<std::string>& arguments, const char* why) {
+        const Outcome outcome = xtrack_command(arguments);
+        EXPECT_EQ(outcome.status, 2) << outcome.err;
+        EXPECT_TRUE(is_one_line_message(outcome.err)) << outcome.err;
+        EXPECT_THAT(outcome.err, HasSubstr(why));
+    };
+    refused({"run", "--set", "min_support=0.4"}, "unwrapped in space");
+    refused({"run", "--mode", "burst", "--set", "order_tolerance=0.4"}, "means nothing");
+    refused({"run", "--mode", "burst", "--set", "mode=hold"}, "no images to hold yet");
+    refused({"decode", kSwipe, "--out", "x", "--set", "mode=burst"}, "unwrapped in space");
+}
+
 // The simulator's script takes half a minute; the first event comes within two seconds.
 TEST(Run, StopsWhenNobodyCanReadIt) {
     if (!std::filesystem::exists("/dev/full")) {

@@ -59,9 +59,10 @@ class Decoding {
  public:
     static Result<std::shared_ptr<Decoding>> create(const Scene& scene, bool relative, bool points,
                                                     std::shared_ptr<FrameRing> ring) {
-        PaperSettings settings;
+        DecodeSettings settings;
         settings.mode = CaptureMode::burst;
-        settings.points = points;
+        settings.keep_maps = points;
+        settings.motion = MotionHandling::off;
         // So much that one order alone is possible: else the wall might be a fringe nearer.
         Rig rig = scene.rig();
         rig.working_volume = WorkingVolume{kNear_mm, kFar_mm};

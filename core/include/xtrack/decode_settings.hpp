@@ -43,7 +43,16 @@ enum class MotionHandling {
     follow,
 };
 
-/// Settings of the DepthDecoder. Defaults suit a hand before a projector at 60 images a second.
+/// Which images a decode of the PaperDecoder is made of: the three modes of the paper.
+/// @since 0.1
+enum class CaptureMode {
+    sliding,  ///< "Default": every image gives a decode, from the newest of each pattern
+    burst,    ///< only whole sets: each decode is of images that no other decode has used
+    hold,     ///< "On Hold": takes no images; the last set again, under new settings
+};
+
+/// Settings of both decoders; which of them a field is for, decode_fields() says. Defaults suit a
+/// hand before a projector at 60 images a second. All may change while a decoder runs.
 /// @since 0.1
 struct DecodeSettings {
     /// Fringe amplitude B below which a pixel is masked, grey levels, 0 ... 127. Phase noise is
@@ -71,12 +80,27 @@ struct DecodeSettings {
     /// Electrons that make a grey level, 1 ... 1e5: the variance of shot noise is the grey value
     /// over it. Webcams have 20 to 80.
     double electrons_per_level = 50.0;
-    /// Keep phase, modulation, coordinate, average and sigma of each depth; costs memory traffic.
+    /// Keep phase, modulation, coordinate, average and sigma of each depth, or the PaperDecoder's
+    /// points; costs memory traffic.
     bool keep_maps = false;
     /// Threads that share the rows of an image, 1 ... 16, the one that pushes included. Results are
     /// the same, bit by bit. Waking them costs about 0.2 ms: for images of 1280x720 and more.
     int threads = 1;
+    CaptureMode mode = CaptureMode::sliding;
+    /// Unwrapping in space: steps between neighbours that deviate by more from those beside them do
+    /// not connect, rad, 0.1 ... 3.1.
+    double step_limit_rad = 2.0;
+    /// Share of the contact of two surfaces that must agree before they are joined, 0 ... 1.
+    double min_support = 0.5;
+    /// Surfaces of fewer pixels are masked, 1 ... kMaxImagePixels.
+    int min_component_px = 64;
+
+    friend bool operator==(const DecodeSettings&, const DecodeSettings&) = default;
 };
+
+/// Whom a field of DecodeSettings means something to.
+/// @since 0.1
+enum class FieldUse { both, pattern /**< DepthDecoder */, paper /**< PaperDecoder */ };
 
 /// One field of DecodeSettings, for whatever lists, shows or changes settings by name: command
 /// line, viewer, bindings.
@@ -91,6 +115,7 @@ struct DecodeField {
     std::span<const char* const> choices;  ///< names of the values 0, 1 ...; empty: a number
     double (*get)(const DecodeSettings&) = nullptr;
     void (*set)(DecodeSettings&, double) = nullptr;
+    FieldUse use = FieldUse::both;
 
     [[nodiscard]] double standard() const { return get(DecodeSettings{}); }
 };

@@ -92,6 +92,17 @@ class DepthDecoder {
     /// Takes one frame. Equal stamps are allowed. No heap allocation.
     DecodeStatus push(const FramePtr& frame) noexcept;
 
+    /// Decodes the images at hand once more, under the settings of now.
+    /// @return need_more where there was no decode yet
+    DecodeStatus decode_again() noexcept;
+
+    /// Settings of the next decode. Images at hand and what was learnt of colours stay; a change of
+    /// `taps`, `order`, `motion`, `max_motion_px`, `keep_maps` or `threads` allocates, forgets how
+    /// things move, and leaves no depth in any pixel until the next decode.
+    /// @return as create(), and nothing changed
+    Result<void> set_settings(const DecodeSettings& settings);
+    [[nodiscard]] const DecodeSettings& settings() const noexcept;
+
     /// The newest depth image; no depth in any pixel before the first depth_ready. Valid until the
     /// next push.
     [[nodiscard]] const DepthFrame& depth() const noexcept;

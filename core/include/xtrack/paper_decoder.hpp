@@ -18,43 +18,6 @@
 
 namespace xtrack {
 
-/// Which images a decode is made of: the three modes of the paper.
-/// @since 0.1
-enum class CaptureMode {
-    sliding,  ///< "Default": every image gives a decode, from the newest of each pattern
-    burst,    ///< only whole sets: each decode is of images that no other decode has used
-    hold,     ///< "On Hold": takes no images; the last set again, under new settings
-};
-
-/// Settings of the PaperDecoder; all of them may change while it runs.
-/// @since 0.1
-struct PaperSettings {
-    CaptureMode mode = CaptureMode::sliding;
-    /// Fringe amplitude below which a pixel is masked, grey levels, 0 ... 127.
-    double min_modulation = 6.0;
-    /// Mask pixels that reach 255 in any image: clipped sines have wrong phases. Where colours or
-    /// motion are looked at, only create() looks at it.
-    bool mask_saturated = true;
-    /// Steps between neighbours that deviate by more from those beside them do not connect, rad,
-    /// 0.1 ... 3.1.
-    double step_limit_rad = 2.0;
-    /// Share of the contact of two surfaces that must agree before they are joined, 0 ... 1.
-    double min_support = 0.5;
-    /// Surfaces of fewer pixels are masked, 1 ... kMaxImagePixels.
-    int min_component_px = 64;
-    /// Whether points() is made.
-    bool points = true;
-    /// Off: every image is unwrapped for itself, as in the paper. Else what has not moved keeps its
-    /// place, and only the rest is looked at anew; and without a rig what moves between three steps
-    /// is followed, to the newest image. Only create() looks at it.
-    MotionHandling motion = MotionHandling::off;
-};
-
-/// @return invalid_argument that names the first setting out of its documented range
-/// @thread any
-/// @since 0.1
-[[nodiscard]] Result<void> validate(const PaperSettings& settings);
-
 /// Pixels that are connected: their fringe orders are right against each other.
 /// @since 0.1
 struct PaperComponent {
@@ -72,9 +35,10 @@ struct PaperComponent {
 /// periods the shortest is, and frames of other patterns are passed over.
 ///
 /// Surfaces that nothing connects leave open by how many whole fringes they lie apart. What stands
-/// still keeps its place where PaperSettings::motion is not off, and what moves is before it. Where
-/// a shadow of the projector parts them, the fringe that leaves one edge arrives at the other,
-/// which says it. Else a component lies where it was a frame ago. Else, and always within it:
+/// still keeps its place where DecodeSettings::motion is not off, and what moves is before it.
+/// Where a shadow of the projector parts them, the fringe that leaves one edge arrives at the
+/// other, which says it. Else a component lies where it was a frame ago. Else, and always within
+/// it:
 ///  - with a rig, where its depths lie in the working volume: the largest component as far away as
 ///    it can be, others in the middle of that. depth() is in millimetres.
 ///  - without one, nearest to the background; depth() is relative (`metric` false): the phase less
@@ -96,7 +60,7 @@ class PaperDecoder {
     ///         for, singular geometry, a projector or camera size that disagrees; io: no memory
     /// @thread any
     [[nodiscard]] static Result<PaperDecoder> create(const PatternSequence& patterns, Size image,
-                                                     const PaperSettings& settings = {},
+                                                     const DecodeSettings& settings = {},
                                                      const Rig* rig = nullptr);
     PaperDecoder(PaperDecoder&&) noexcept;
     PaperDecoder& operator=(PaperDecoder&&) noexcept;
@@ -112,8 +76,8 @@ class PaperDecoder {
     /// Settings of the next decode; a change of `mode` begins with the next frame. On hold the
     /// images at hand are decoded again at once.
     /// @errors invalid_argument, and nothing changed
-    Result<void> set_settings(const PaperSettings& settings);
-    [[nodiscard]] const PaperSettings& settings() const noexcept;
+    Result<void> set_settings(const DecodeSettings& settings);
+    [[nodiscard]] const DecodeSettings& settings() const noexcept;
 
     /// Takes the last decode for the empty scene: relative depth is then before it, until this is
     /// called again. Takes tens of milliseconds; allocates.
@@ -128,7 +92,7 @@ class PaperDecoder {
     [[nodiscard]] const DepthFrame& depth() const noexcept;
     /// The depth as points of the camera frame, mm: rows of x, y, z for every pixel, NaN where
     /// there is no depth. Without a rig of a camera whose image is as wide as it is far. Empty
-    /// without PaperSettings::points.
+    /// without DecodeSettings::keep_maps.
     [[nodiscard]] ImageView<const float> points_mm() const noexcept;
     /// Wrapped phase and modulation.
     [[nodiscard]] const PhaseMap& phase() const noexcept;

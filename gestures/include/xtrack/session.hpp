@@ -48,8 +48,7 @@ struct SessionOptions {
     DecodeMethod method = DecodeMethod::automatic;
     /// False: fringes are decoded as if the source had no calibration.
     bool use_rig = true;
-    DecodeSettings decode;  ///< of DecodeMethod::pattern
-    PaperSettings paper;    ///< of DecodeMethod::paper
+    DecodeSettings decode;
     TrackerSettings tracker;
     GestureSettings gestures;
 };
@@ -185,9 +184,18 @@ class Session {
     /// true millimetres and are not recognised (pinch). @thread any
     [[nodiscard]] bool metric() const noexcept;
 
-    /// Settings of the PaperDecoder from the next frame on. @thread that of run() or step()
-    /// @errors unsupported: the session has none; invalid_argument, and nothing changed
-    Result<void> set_paper_settings(const PaperSettings& settings);
+    /// What fringes are decoded by: `pattern` or `paper`; `automatic` where there are none.
+    /// @thread any
+    [[nodiscard]] DecodeMethod method() const noexcept;
+
+    /// Settings of the decoder from the next frame on; on hold (DecodeSettings::mode) the images at
+    /// hand are decoded again at once. @thread that of run() or step(), a callback included; what a
+    /// PipelineView points to is then of the new settings
+    /// @errors unsupported: the session has no fringes; invalid_argument; io: no memory; nothing
+    ///         changed
+    Result<void> set_decode_settings(const DecodeSettings& settings);
+    /// Those of now; the defaults where there are no fringes. @thread as set_decode_settings()
+    [[nodiscard]] DecodeSettings decode_settings() const noexcept;
     /// Takes the last decode for the empty scene (PaperDecoder::learn_background()).
     /// @thread that of run() or step()
     /// @errors unsupported: the session has no PaperDecoder, or nothing was decoded yet; io

@@ -41,7 +41,7 @@ TEST(DecodeFields, NameEveryFieldWithARangeThatHoldsItsStandard) {
             EXPECT_THAT(validate(settings).error().message, HasSubstr(field.name));
         }
     }
-    EXPECT_EQ(names.size(), 13U);
+    EXPECT_EQ(names.size(), 17U);
 }
 
 TEST(DecodeFields, AreSetByName) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/core/pipeline/plane_scene.hpp"
@@ -256,6 +257,46 @@ TEST(DepthDecoder, AveragesABitAndItsInverseWhereNoFlatIs) {
         ASSERT_EQ(decoder.average().at(x, 30), 120.0F) << x;
     }
     EXPECT_GT(score(decoder.depth(), kWall).good, 0.0);
+}
+
+TEST_P(EverySequence, SettingsChangeWhileItRuns) {
+    const PatternSequence patterns = this->patterns();
+    const int count = static_cast<int>(patterns.patterns.size());
+    DepthDecoder decoder = make(patterns);
+    EXPECT_EQ(decoder.decode_again().state, DecodeState::need_more);
+    for (int n = 0; n < count; ++n) {
+        (void)decoder.push(plane_frame(plane_rig(), patterns, n, n, kWall));
+    }
+    const double before = score(decoder.depth(), kWall).good;
+    DecodeSettings settings;
+    settings.min_modulation = 127.0;
+    ASSERT_TRUE(decoder.set_settings(settings));
+    EXPECT_EQ(score(decoder.depth(), kWall).good, before) << "not before the next decode";
+    EXPECT_EQ(decoder.decode_again().state, DecodeState::depth_ready);
+    EXPECT_EQ(score(decoder.depth(), kWall).none, 1.0);
+    // What needs other memory: the images at hand stay.
+    settings = {};
+    settings.keep_maps = true;
+    settings.motion = MotionHandling::off;
+    settings.threads = 2;
+    ASSERT_TRUE(decoder.set_settings(settings));
+    EXPECT_EQ(score(decoder.depth(), kWall).none, 1.0);
+    EXPECT_EQ(decoder.decode_again().state, DecodeState::depth_ready);
+    EXPECT_EQ(score(decoder.depth(), kWall).good, before);
+    EXPECT_EQ(decoder.sigma_mm().width(), plane_rig().camera.size.width);
+    EXPECT_EQ(decoder.push(plane_frame(plane_rig(), patterns, 0, count, kWall)).state,
+              DecodeState::depth_ready);
+
+    settings.order_tolerance = 0.6;
+    const auto refused = decoder.set_settings(settings);
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message, testing::HasSubstr("order_tolerance"));
+    EXPECT_EQ(decoder.settings().order_tolerance, 0.5);
+    settings = decoder.settings();
+    settings.taps = PhaseTaps::four_plus_one;
+    EXPECT_FALSE(decoder.set_settings(settings)) << "no cycle of four";
+    EXPECT_EQ(decoder.decode_again().state, DecodeState::depth_ready);
+    EXPECT_EQ(score(decoder.depth(), kWall).good, before);
 }
 
 TEST(DepthDecoder, HasNoDepthBeforeItsFirst) {

@@ -63,8 +63,9 @@ void expect_none_in_paper_mode(const Rig* rig, MotionHandling motion) {
             << "allocations cannot be counted here: no glibc, or a sanitizer is in its way";
     }
     const PatternSequence patterns = three_step_sequence(Axis::x, {1280, 768}, 32.0);
-    PaperSettings settings;
+    DecodeSettings settings;
     settings.motion = motion;
+    settings.keep_maps = true;
     auto decoder = PaperDecoder::create(patterns, test::StepScene::kCamera, settings, rig);
     ASSERT_TRUE(decoder) << decoder.error().message;
     test::StepScene scene;

@@ -23,7 +23,20 @@ const PatternSequence& fringes() {
     return patterns;
 }
 
-PaperDecoder make(const PaperSettings& settings = {}, const Rig* rig = nullptr,
+const PatternSequence& wide_fringes() {
+    static const PatternSequence patterns = three_step_sequence(Axis::x, {1280, 768}, 64.0);
+    return patterns;
+}
+
+// The paper's way: every image for itself.
+DecodeSettings plain() {
+    DecodeSettings settings;
+    settings.motion = MotionHandling::off;
+    settings.keep_maps = true;
+    return settings;
+}
+
+PaperDecoder make(const DecodeSettings& settings = plain(), const Rig* rig = nullptr,
                   const PatternSequence& patterns = fringes()) {
     auto decoder = PaperDecoder::create(patterns, test::StepScene::kCamera, settings, rig);
     EXPECT_TRUE(decoder) << decoder.error().message;
@@ -78,7 +91,7 @@ TEST(PaperDecoder, SlidesOverTheLastThreeImages) {
 }
 
 TEST(PaperDecoder, ABurstUsesEveryImageOnce) {
-    PaperSettings settings;
+    DecodeSettings settings = plain();
     settings.mode = CaptureMode::burst;
     auto decoder = make(settings);
     const test::StepScene scene;
@@ -102,7 +115,7 @@ TEST(PaperDecoder, OnHoldAChangedSettingShowsInTheSameImages) {
     scene.contrast_grey = 60.0;  // an amplitude of 30
     ASSERT_EQ(show(decoder, scene, 0), DecodeState::depth_ready);
     const int before = with_depth(decoder);
-    PaperSettings settings = decoder.settings();
+    DecodeSettings settings = decoder.settings();
     settings.mode = CaptureMode::hold;
     ASSERT_TRUE(decoder.set_settings(settings));
     EXPECT_EQ(with_depth(decoder), before);
@@ -136,7 +149,7 @@ TEST(PaperDecoder, SettingsChangeWhileItRuns) {
     scene.contrast_grey = 60.0;
     ASSERT_EQ(show(decoder, scene, 0), DecodeState::depth_ready);
     const int before = with_depth(decoder);
-    PaperSettings settings;
+    DecodeSettings settings = plain();
     settings.min_modulation = 40.0;
     ASSERT_TRUE(decoder.set_settings(settings));
     EXPECT_EQ(with_depth(decoder), before) << "not before the next decode";
@@ -151,8 +164,35 @@ TEST(PaperDecoder, SettingsChangeWhileItRuns) {
     EXPECT_EQ(decoder.settings().min_modulation, 40.0);
 }
 
+// What moves is followed from then on, and no longer once it is switched off.
+TEST(PaperDecoder, MotionIsSwitchedWhileItRuns) {
+    auto decoder = make(plain(), nullptr, wide_fringes());
+    const auto sequence_of = [&](int number) {
+        EXPECT_EQ(show(decoder, test::StepScene{}, number, wide_fringes()),
+                  DecodeState::depth_ready);
+        return decoder.depth().sequence;
+    };
+    EXPECT_EQ(sequence_of(0), 1U) << "the middle of its images";
+    DecodeSettings settings = plain();
+    settings.motion = MotionHandling::follow;
+    ASSERT_TRUE(decoder.set_settings(settings));
+    for (int number = 1; number < 4; ++number) {
+        EXPECT_EQ(sequence_of(number), 3U * static_cast<unsigned>(number) + 2U) << "the newest";
+    }
+    const int followed = with_depth(decoder);
+    settings.mode = CaptureMode::hold;
+    settings.min_modulation = 127.0;
+    ASSERT_TRUE(decoder.set_settings(settings));
+    EXPECT_EQ(with_depth(decoder), 0);
+    settings.min_modulation = 6.0;
+    ASSERT_TRUE(decoder.set_settings(settings));
+    EXPECT_EQ(with_depth(decoder), followed);
+    ASSERT_TRUE(decoder.set_settings(plain()));
+    EXPECT_EQ(sequence_of(4), 13U);
+}
+
 TEST(PaperDecoder, NothingToHoldIsNoDecode) {
-    PaperSettings settings;
+    DecodeSettings settings = plain();
     settings.mode = CaptureMode::hold;
     auto decoder = make(settings);
     EXPECT_EQ(decoder.decode_again().state, DecodeState::need_more);
@@ -222,7 +262,7 @@ TEST(PaperDecoder, APlateKeepsItsOrderWhileItComesNearer) {
 
 TEST(PaperDecoder, WithARigDepthIsMetric) {
     const Rig rig = test::StepScene::rig();
-    auto decoder = make({}, &rig);
+    auto decoder = make(plain(), &rig);
     const test::StepScene scene;
     ASSERT_EQ(show(decoder, scene, 0), DecodeState::depth_ready);
     EXPECT_TRUE(decoder.depth().metric);
@@ -239,7 +279,7 @@ TEST(PaperDecoder, WithARigDepthIsMetric) {
 TEST(PaperDecoder, AVolumeOfOneFringeLeavesNothingOpen) {
     Rig rig = test::StepScene::rig();
     rig.working_volume = WorkingVolume{580.0, 640.0};  // 24 of 32 px
-    auto decoder = make({}, &rig);
+    auto decoder = make(plain(), &rig);
     test::StepScene scene;
     scene.plate_left_mm = scene.plate_top_mm = -200.0;
     scene.plate_right_mm = scene.plate_bottom_mm = 200.0;
@@ -251,7 +291,7 @@ TEST(PaperDecoder, AVolumeOfOneFringeLeavesNothingOpen) {
 
 TEST(PaperDecoder, WhatNothingOrdersIsMarked) {
     const Rig rig = test::StepScene::rig();
-    auto decoder = make({}, &rig);
+    auto decoder = make(plain(), &rig);
     test::StepScene scene;
     scene.wall_mm = 5000.0;  // its light is lost in the noise
     scene.plate_left_mm = scene.plate_top_mm = -40.0;
@@ -278,7 +318,7 @@ TEST(PaperDecoder, WhatNothingOrdersIsMarked) {
 
 TEST(PaperDecoder, PointsAreTheDepthAlongTheRays) {
     const Rig rig = test::StepScene::rig();
-    auto decoder = make({}, &rig);
+    auto decoder = make(plain(), &rig);
     const test::StepScene scene;
     ASSERT_EQ(show(decoder, scene, 0), DecodeState::depth_ready);
     const auto points = decoder.points_mm();
@@ -299,8 +339,8 @@ TEST(PaperDecoder, PointsAreTheDepthAlongTheRays) {
         }
     }
     EXPECT_GT(checked, 2000);
-    PaperSettings settings;
-    settings.points = false;
+    DecodeSettings settings = plain();
+    settings.keep_maps = false;
     ASSERT_TRUE(decoder.set_settings(settings));
     EXPECT_TRUE(decoder.points_mm().empty());
 }
@@ -329,7 +369,7 @@ TEST(PaperDecoder, AThingWhosePhaseGoesOnIsKeptApartFromWhatStandsStill) {
     const Rig rig = test::StepScene::rig();
     test::StepScene scene;
     for (const bool follow : {false, true}) {
-        PaperSettings settings;
+        DecodeSettings settings = plain();
         settings.motion = follow ? MotionHandling::follow : MotionHandling::off;
         auto decoder = make(settings, &rig);
         scene.plate_mm = 0.0;
@@ -350,11 +390,6 @@ TEST(PaperDecoder, AThingWhosePhaseGoesOnIsKeptApartFromWhatStandsStill) {
             EXPECT_EQ(decoder.component().at(kWallU, kWallV), PaperDecoder::kStill);
         }
     }
-}
-
-const PatternSequence& wide_fringes() {
-    static const PatternSequence patterns = three_step_sequence(Axis::x, {1280, 768}, 64.0);
-    return patterns;
 }
 
 // A body that stands 50 px before the wall, to the image's right border, where no shadow of it is
@@ -390,7 +425,7 @@ DecodeState show_body_and_hand(PaperDecoder& decoder, int number, bool with_hand
 
 TEST(PaperDecoder, AShadowSaysWhichWayIsNearer) {
     for (const bool mirrored : {false, true}) {
-        PaperSettings settings;
+        DecodeSettings settings = plain();
         settings.motion = MotionHandling::mask;
         auto decoder = make(settings, nullptr, wide_fringes());
         for (int n = 0; n < 10; ++n) {
@@ -439,7 +474,7 @@ TEST(PaperDecoder, AnImageThatIsRejectedSpoilsNoDecodeOfTheOneBefore) {
 
 TEST(PaperDecoder, TakesAnyPeriodAndPassesOverOtherPatterns) {
     PatternSequence dual = dual_sequence(Axis::x, {1280, 768}, 512.0, 64.0);
-    auto decoder = make({}, nullptr, dual);
+    auto decoder = make(plain(), nullptr, dual);
     EXPECT_EQ(decoder.frames_needed(), 3);
     const test::StepScene scene;
     EXPECT_EQ(show(decoder, scene, 0, dual), DecodeState::depth_ready);
@@ -447,7 +482,7 @@ TEST(PaperDecoder, TakesAnyPeriodAndPassesOverOtherPatterns) {
     EXPECT_EQ(decoder.push(scene.frame(dual, 0, 6)).state, DecodeState::need_more);
 
     const PatternSequence four = n_step_sequence(Axis::x, {1280, 768}, 32.0, 4);
-    auto of_four = make({}, nullptr, four);
+    auto of_four = make(plain(), nullptr, four);
     EXPECT_EQ(show(of_four, scene, 0, four), DecodeState::depth_ready);
     EXPECT_NEAR(PaperDecoder::kBackground_mm - depth_at(of_four, kPlateU, kPlateV),
                 PaperDecoder::kMmPerProjectorPx * disparity_px(600.0), 3.0);

@@ -41,6 +41,48 @@ TEST(Session, CallsBackForTheGestureSubscribedTo) {
     EXPECT_EQ(swipes[1].emit, swipes[1].sensor);
 }
 
+TEST(Session, TheDecodersSettingsChangeWhileItRuns) {
+    auto session = Session::open("sim");
+    ASSERT_TRUE(session) << session.error().message;
+    EXPECT_EQ(session->method(), DecodeMethod::pattern);
+    int depths = 0;
+    std::size_t known = 0;
+    session->subscribe_pipeline([&](const PipelineView& view) {
+        if (view.depth == nullptr) {
+            return;
+        }
+        known = 0;
+        for (int y = 0; y < view.depth->depth.height(); ++y) {
+            for (int x = 0; x < view.depth->depth.width(); ++x) {
+                known += view.depth->depth.at(x, y) != 0 ? 1U : 0U;
+            }
+        }
+        ++depths;
+        if (depths == 3) {
+            DecodeSettings settings = session->decode_settings();
+            settings.min_modulation = 127.0;
+            EXPECT_TRUE(session->set_decode_settings(settings));
+            settings.order = OrderSource::none;
+            EXPECT_FALSE(session->set_decode_settings(settings)) << "a session needs depth";
+        }
+    });
+    std::vector<std::size_t> seen;
+    while (depths < 4) {
+        ASSERT_TRUE(session->step());
+        seen.push_back(known);
+    }
+    EXPECT_GT(seen[seen.size() - 2], 10000U);
+    EXPECT_EQ(seen.back(), 0U);
+    EXPECT_EQ(session->decode_settings().min_modulation, 127.0);
+
+    auto hands = swiping_session();
+    ASSERT_TRUE(hands);
+    EXPECT_EQ(hands->method(), DecodeMethod::automatic);
+    const auto refused = hands->set_decode_settings({});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::unsupported);
+}
+
 TEST(Session, TwoReplaysGiveTheSameEvents) {
     std::string runs[2];
     for (std::string& text : runs) {

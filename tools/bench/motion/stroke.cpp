@@ -185,10 +185,7 @@ Result<MotionDecoder> MotionDecoder::create(const Rig& rig, const PatternSequenc
     if (patterns.patterns.size() != 1) {
         return by_patterns.error();
     }
-    PaperSettings in_space;
-    in_space.points = false;
-    in_space.motion = settings.motion;
-    auto made = PaperDecoder::create(patterns, rig.camera.size, in_space, &rig);
+    auto made = PaperDecoder::create(patterns, rig.camera.size, settings, &rig);
     if (!made) {
         return made.error();
     }

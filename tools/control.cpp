@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/control.hpp"
+
+#include <array>
+#include <cerrno>
+#include <cstddef>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "tools/settings_option.hpp"
+
+#ifndef _WIN32
+#include <poll.h>
+#include <unistd.h>
+#endif
+
+namespace xtrack::tools {
+
+namespace {
+
+constexpr std::size_t kMostLine = 256;
+
+// What has come on standard input, if anything; nothing at its end.
+std::optional<std::string> read_some() {
+#ifdef _WIN32
+    return std::nullopt;
+#else
+    pollfd in{STDIN_FILENO, POLLIN, 0};
+    if (::poll(&in, 1, 0) <= 0) {
+        return "";
+    }
+    std::array<char, kMostLine> bytes{};
+    const ssize_t count = ::read(STDIN_FILENO, bytes.data(), bytes.size());
+    if (count < 0 && (errno == EINTR || errno == EAGAIN)) {
+        return "";
+    }
+    return count > 0 ? std::optional<std::string>(
+                           std::string(bytes.data(), static_cast<std::size_t>(count)))
+                     : std::nullopt;
+#endif
+}
+
+double percent_with_depth(const DepthFrame& depth) {
+    std::size_t known = 0;
+    for (int y = 0; y < depth.depth.height(); ++y) {
+        for (int x = 0; x < depth.depth.width(); ++x) {
+            known += depth.depth.at(x, y) != 0 ? 1 : 0;
+        }
+    }
+    return 100.0 * static_cast<double>(known) /
+           (static_cast<double>(depth.depth.width()) * depth.depth.height());
+}
+
+}  // namespace
+
+void Control::poll(Session& session, const PipelineView& view) {
+    paper_ = view.paper != nullptr ? view.paper : paper_;
+    if (!open_) {
+        return;
+    }
+    const std::optional<std::string> some = read_some();
+    open_ = some.has_value();
+    pending_ += some.value_or("\n");
+    for (std::size_t end = 0; (end = pending_.find('\n')) != std::string::npos;) {
+        take(pending_.substr(0, end), session);
+        pending_.erase(0, end + 1);
+    }
+    if (pending_.size() > kMostLine) {
+        fmt::print(stderr, "xtrack: a line of more than {} characters is no setting\n", kMostLine);
+        pending_.clear();
+    }
+}
+
+void Control::take(const std::string& line, Session& session) const {
+    if (line.empty()) {
+        return;
+    }
+    DecodeSettings settings = session.decode_settings();
+    auto done = apply_settings({line}, settings);
+    if (done) {
+        done = check_settings({line}, session.method());
+    }
+    if (done) {
+        done = session.set_decode_settings(settings);
+    }
+    if (!done) {
+        fmt::print(stderr, "xtrack: {}\n", done.error().message);
+    } else if (settings.mode == CaptureMode::hold) {
+        fmt::print(stderr, "{}: {}\n", line,
+                   paper_ == nullptr ? "nothing was decoded yet that could be held"
+                                     : fmt::format("{:.1f} % of the pixels have depth",
+                                                   percent_with_depth(paper_->depth())));
+    } else {
+        fmt::print(stderr, "{}: from the next image on\n", line);
+    }
+}
+
+}  // namespace xtrack::tools
