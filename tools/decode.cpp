@@ -119,8 +119,10 @@ Result<Chosen> choose_decoder(const RecordingReader& recording, const PatternSeq
         settings.order = order;
         return DepthDecoder::create(recording.rig(), patterns, recording.image_size(), settings);
     };
-    Error refusal{ErrorCode::unsupported,
-                  "no rig.yaml: no millimetres, heights have no scale; add the calibration"};
+    Error refusal{
+        ErrorCode::unsupported,
+        "no rig.yaml: no millimetres, heights have no scale, and what stands out most is taken to "
+        "be nearer; add the calibration"};
     if (recording.has_rig()) {
         const OrderSource wanted =
             options.order_from.empty() ? OrderSource::automatic : OrderSource::depth_image;
@@ -186,6 +188,16 @@ class DecodeRun {
         }
         if (reports_.empty()) {
             return no_complete_set(recording_);
+        }
+        if (std::all_of(reports_.begin(), reports_.end(),
+                        [](const DecodeReport& r) { return r.valid_percent <= 0.0; })) {
+            return Error{
+                ErrorCode::malformed,
+                fmt::format("{}: no pixel has {}; is pattern.yaml that of these images, "
+                            "the rig that of this camera, min_modulation of {:g} grey "
+                            "levels too much?",
+                            recording_.folder().string(), chosen_.makes_depth ? "depth" : "a phase",
+                            chosen_.decoder.settings().min_modulation)};
         }
         return output_->commit();
     }
@@ -463,9 +475,19 @@ void add_decode(CLI::App& app, int& exit_status) {
         ->check(CLI::IsMember({"ply", "pcd", "obj"}))
         ->default_str("ply");
     command->add_flag("--json", options->json, "The figures as one JSON object");
-    command->callback([options, &exit_status] {
+    command->callback([command, options, &exit_status] {
         DecodeSettings settings;
         settings.min_modulation = options->min_modulation;
+        const bool twice =
+            command->count("--min-modulation") > 0 &&
+            std::any_of(options->changes.begin(), options->changes.end(),
+                        [](const std::string& c) { return c.starts_with("min_modulation="); });
+        if (twice) {
+            exit_status =
+                usage({ErrorCode::invalid_argument,
+                       "--min-modulation and --set min_modulation are the same; give one"});
+            return;
+        }
         for (const auto& ok : {validate(settings), apply_settings(options->changes, settings)}) {
             if (!ok) {
                 exit_status = usage(ok.error());

@@ -86,9 +86,8 @@ Result<ShownMethod> show_method(const std::string& name, const GestureSettings& 
         verdict = judge(*method, needs);
         verdict.reason += wants_colour ? "; the simulated camera sees colour for it" : "";
         if (!verdict.possible) {
-            return Error{ErrorCode::unsupported,
-                         "--method " + name + ": " + verdict.reason +
-                             "; choose another method, or fewer gestures with --gestures"};
+            return Error{ErrorCode::unsupported, "--method " + name + ": " + verdict.reason +
+                                                     "; xtrack methods lists what carries them"};
         }
     }
     auto sequence = method_sequence(verdict.method, settings.rig, settings.patterns.axis);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -30,7 +31,8 @@ void print_text(const MethodNeeds& needs, const std::string& colours,
     if (!colours.empty()) {
         fmt::print("colour self-test: {}\n", colours);
     }
-    fmt::print("all of a hand of {:.2f} m/s must be seen{}\n\n", needs.hand_mmps / 1000.0,
+    fmt::print("all of a hand of {:.2f} m/s must be seen{}\n\n",
+               static_cast<double>(std::lround(needs.hand_mmps / 10.0)) / 100.0,
                needs.metric ? ", in mm" : "");
     fmt::print("{:<11}{:>7}  {:<8}{:<9}{}\n", "method", "images", "changes", "depth", "here");
     for (const MethodInfo& one : methods()) {
@@ -39,6 +41,10 @@ void print_text(const MethodNeeds& needs, const std::string& colours,
                    one.changes ? "yes" : "never", one.metric ? "mm" : "relative",
                    verdict.possible ? "" : "no: ", verdict.reason);
     }
+    fmt::print(
+        "\nThese speeds are for choosing, with a margin for any hand; xtrack bench --motion "
+        "measures "
+        "what still\nworks.\n");
     if (chosen) {
         fmt::print("\nauto: {}, {}\n", info(chosen->method).name, chosen->reason);
     } else {

@@ -76,7 +76,14 @@ void add_run(CLI::App& app, int& exit_status) {
                      "played at its own pace")
         ->default_str("sim");
     command->add_option("--seed", run->seed, "Simulator: another person, movement and noise")
-        ->check(CLI::PositiveNumber);
+        ->check(CLI::Validator(
+            [](const std::string& text) {
+                return text.find_first_not_of("0123456789") != std::string::npos ||
+                               text.find_first_not_of("0") == std::string::npos
+                           ? std::string("must be a whole number from 1 on")
+                           : std::string();
+            },
+            "from 1 on"));
     command
         ->add_option("--method", run->method,
                      "Simulator: what the projector shows; auto or a name from `xtrack methods`")

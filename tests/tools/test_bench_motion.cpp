@@ -33,7 +33,7 @@ tools::HandAccuracy measure(const bench::Stroke& stroke, const bench::MotionMeth
 }
 
 TEST(BenchMotion, AHandThatIsHeldStillIsMeasured) {
-    const auto method = method_named("three_step");
+    const auto method = method_named("three-step");
     const auto stroke = stroke_of(method, Vec3f::Zero());
     ASSERT_EQ(stroke.truths.size(), 12U);
     const auto hand = measure(stroke, method);
@@ -45,7 +45,7 @@ TEST(BenchMotion, AHandThatIsHeldStillIsMeasured) {
 }
 
 TEST(BenchMotion, TruthThatIsDisplacedCountsAsOff) {
-    const auto method = method_named("three_step");
+    const auto method = method_named("three-step");
     auto stroke = stroke_of(method, Vec3f::Zero());
     for (SimTruth& truth : stroke.truths) {
         for (int y = 0; y < truth.depth.height(); ++y) {
@@ -58,7 +58,7 @@ TEST(BenchMotion, TruthThatIsDisplacedCountsAsOff) {
 }
 
 TEST(BenchMotion, TheHandMovesSoManyMillimetresAFrame) {
-    const auto method = method_named("three_step");
+    const auto method = method_named("three-step");
     const auto stroke = stroke_of(method, {60.0F * 20.0F, 0.0F, 0.0F});
     ASSERT_EQ(stroke.truths.size(), 9U);  // of 20 mm within 80 mm of the middle
     const auto& first = stroke.truths.front().hands[0];
@@ -72,7 +72,7 @@ TEST(BenchMotion, TheHandMovesSoManyMillimetresAFrame) {
 // An arm goes through the depth at which it looks as the wall behind it: what is cut off by that is
 // no wall that came to light, and its turns go on from the rest of the arm.
 TEST(BenchMotion, AnArmThatCrossesTheWallsFringeKeepsItsTurns) {
-    const auto method = method_named("rgb_one_frame");
+    const auto method = method_named("rgb-static");
     const auto hand = measure(stroke_of(method, {-60.0F * 33.0F, 0.0F, 0.0F}, 2), method);
     EXPECT_GT(hand.pixels, 10'000U);
     EXPECT_LT(hand.off_percent(), 2.0);
@@ -82,14 +82,14 @@ TEST(BenchMotion, AnArmThatCrossesTheWallsFringeKeepsItsTurns) {
 // A hand that came out of the wall's fringe is a fringe off at first; a few images' shadows mend
 // it.
 TEST(BenchMotion, AWrongFringeIsMendedByWhatShadowsSay) {
-    const auto method = method_named("rgb_one_frame");
+    const auto method = method_named("rgb-static");
     const auto hand = measure(stroke_of(method, {0.0F, 0.0F, -60.0F * 10.0F}, 2), method);
     EXPECT_GT(hand.pixels, 10'000U);
     EXPECT_LT(hand.off_percent(), 5.0);
 }
 
 TEST(BenchMotion, AStrokeWithoutAnyDepthIsMissing) {
-    const auto method = method_named("three_step");
+    const auto method = method_named("three-step");
     auto stroke = stroke_of(method, Vec3f::Zero());
     stroke.frames.resize(2);
     const auto hand = measure(stroke, method);
@@ -136,7 +136,7 @@ TEST(BenchMotion, SaysFiguresAndReferenceAsJson) {
     EXPECT_LE(fast.at("off_percent").get<double>() + fast.at("missing_percent").get<double>(),
               36.0);
     const json& targets = motion.at("targets");
-    EXPECT_EQ(targets[0].at("name"), "rgb_two_frames");
+    EXPECT_EQ(targets[0].at("name"), "rgb");
     EXPECT_TRUE(targets[0].at("reached").is_null());
     EXPECT_EQ(targets[1].at("name"), "grey");
     EXPECT_EQ(targets[1].at("reached"), true);

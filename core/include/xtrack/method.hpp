@@ -38,8 +38,10 @@ struct MethodInfo {
     const char* summary = "";  ///< one line
     bool colour = false;       ///< needs a colour camera
     bool changes = true;       ///< false: the pattern never changes, nothing flickers
-    bool metric = true;        ///< false: relative depth, unless the order comes from elsewhere
-    int images = 0;            ///< camera images that one depth image is made of
+    /// False: relative depth, unless the order comes from elsewhere. With a rig it is in mm all the
+    /// same, but may lie whole fringes off.
+    bool metric = true;
+    int images = 0;  ///< camera images that one depth image is made of
     /// How far a hand may move from one pattern to the next before more than 5 % of its pixels are
     /// off by over 20 mm or 15 % are missing; measured on the simulated rig, sideways
     /// (docs/measurements.md), of one image as of the colour pair. 0: the hand must rest.

@@ -8,6 +8,7 @@ namespace {
 constexpr double kFine_px = 96.0;
 constexpr double kColourCoarse_px = 768.0;
 constexpr double kGrayCell_px = 32.0;
+constexpr double kCarrier_px = 16.0;
 
 DecodeSettings as_they_come(PhaseTaps taps) {
     DecodeSettings settings;
@@ -26,7 +27,7 @@ Result<std::array<MotionMethod, kMotionMethods>> motion_methods(const Rig& rig) 
     const Size projector = rig.projector->size;
     const PatternSequence three = three_step_sequence(Axis::x, projector, *unique_px);
     std::array<MotionMethod, kMotionMethods> methods{{
-        {"three_step",
+        {"three-step",
          "3 steps, one volume-wide period",
          three,
          false,
@@ -40,7 +41,7 @@ Result<std::array<MotionMethod, kMotionMethods>> motion_methods(const Rig& rig) 
            {11, 60, 3},
            {12, 74, 2}}},
          {{{3.7, 2}, {5.8, 5}}}},
-        {"three_plus_two",
+        {"three-plus-two",
          "3+2, as they come",
          three,
          false,
@@ -82,7 +83,7 @@ Result<std::array<MotionMethod, kMotionMethods>> motion_methods(const Rig& rig) 
            {9.6, 25, 59},
            {12, 41, 47}}},
          {}},
-        {"gray_code",
+        {"gray-phase",
          "Gray code 5 bits + 3 steps",
          gray_code_sequence(Axis::x, projector, kGrayCell_px),
          false,
@@ -96,7 +97,7 @@ Result<std::array<MotionMethod, kMotionMethods>> motion_methods(const Rig& rig) 
            {9.9, 24, 73},
            {kNoFigure, 46, 54}}},
          {}},
-        {"rgb_one_frame",
+        {"rgb-static",
          "RGB one frame, P 96",
          rgb_sequence(Axis::x, projector, {kFine_px}),
          true,
@@ -110,7 +111,7 @@ Result<std::array<MotionMethod, kMotionMethods>> motion_methods(const Rig& rig) 
            {2.9, 2, 1},
            {3.6, 2, 0}}},
          {{{2.7, 1}, {2.7, 1}}}},
-        {"rgb_two_frames",
+        {"rgb",
          "RGB two frames, P 768 + P 96",
          rgb_sequence(Axis::x, projector, {kColourCoarse_px, kFine_px}),
          true,
@@ -124,6 +125,13 @@ Result<std::array<MotionMethod, kMotionMethods>> motion_methods(const Rig& rig) 
            {2.5, 7, 0},
            {4.2, 11, 0}}},
          {{{1.9, 4}, {1.9, 5}}}},
+        {"ftp",
+         "one grey frame, P 16 (ftp)",
+         n_step_sequence(Axis::x, projector, kCarrier_px, 1),
+         false,
+         {},
+         {},
+         {}},
     }};
     // The camera and the projector agree on what is linear but for a rest that calibration leaves.
     for (MotionMethod& method : methods) {

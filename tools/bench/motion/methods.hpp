@@ -47,10 +47,10 @@ struct MotionTarget {
     double off_percent;
 };
 inline constexpr std::array<MotionTarget, 2> kMotionTargets{
-    {{"rgb_two_frames", 10.0, 5.0}, {"grey", 5.0, 5.0}}};
+    {{"rgb", 10.0, 5.0}, {"grey", 5.0, 5.0}}};
 
 /// All methods, in the order of the reference; those with the same patterns follow each other.
-inline constexpr std::size_t kMotionMethods = 7;
+inline constexpr std::size_t kMotionMethods = 8;
 [[nodiscard]] Result<std::array<MotionMethod, kMotionMethods>> motion_methods(const Rig& rig);
 
 }  // namespace xtrack::tools::bench
