@@ -37,6 +37,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Of less, images grow darker toward white: somebody corrected too much.
+constexpr double kUsualGamma = 0.9;
+
 struct DecodeOptions {
     std::string recording;
     std::string out;
@@ -105,14 +108,8 @@ Result<Chosen> choose_decoder(const RecordingReader& recording, const PatternSeq
     // One set of patterns is all there is to the first depth; a stream has more to average over.
     settings.taps = options.all ? PhaseTaps::automatic : PhaseTaps::least_squares;
     settings.motion = options.all ? MotionHandling::follow : MotionHandling::off;
-    const OrderSource order_before = settings.order;
     if (const auto set = apply_settings(options.changes, settings); !set) {
         return set.error();
-    }
-    if (settings.order != order_before) {
-        return Error{ErrorCode::invalid_argument,
-                     "--set order: decode takes the order from the patterns; give --order-from for "
-                     "another"};
     }
     settings.keep_maps = true;  // what the files are written from
     const auto create = [&](OrderSource order) {
@@ -209,8 +206,14 @@ class DecodeRun {
             method += ", unwrapped in space; heights without scale";
         }
         if (options_.gamma) {
+            const bool found = options_.gamma == "auto";
             method += fmt::format("; gamma {:.2f}{}", *patterns_.gamma,
-                                  options_.gamma == "auto" ? " from the fringes" : "");
+                                  !found ? ""
+                                  : *patterns_.gamma < kUsualGamma
+                                      ? " from the fringes, less than projectors have: were the "
+                                        "patterns bent before they were shown, or the camera's "
+                                        "images after?"
+                                      : " from the fringes");
         } else if (patterns_.response) {
             method += "; the measured response of pattern.yaml";
         }

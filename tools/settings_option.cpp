@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/settings_option.hpp"
 
+#include <string_view>
+
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 namespace xtrack::tools {
 
 namespace {
+
+// What a command decides itself: the order is its business, and nobody would see the maps.
+bool is_offered(const DecodeField& field) {
+    const std::string_view name = field.name;
+    return name != "order" && name != "keep_maps";
+}
 
 std::string range_of(const DecodeField& field) {
     if (field.choices.empty()) {
@@ -23,6 +31,9 @@ std::string range_of(const DecodeField& field) {
 std::string all_settings() {
     std::string text = "Changes a setting of the decoder:";
     for (const DecodeField& field : decode_fields()) {
+        if (!is_offered(field)) {
+            continue;
+        }
         text += fmt::format("\n{}: {}{} ({}; else {})", field.name,
                             field.use == FieldUse::paper ? "unwrapping in space: " : "",
                             field.summary, range_of(field), text_of(field, DecodeSettings{}));
@@ -63,6 +74,9 @@ Result<void> check_settings(const std::vector<std::string>& changes, DecodeMetho
         for (const DecodeField& field : decode_fields()) {
             if (name != field.name) {
                 continue;
+            }
+            if (!is_offered(field)) {
+                return refuse(change, "is what the command decides itself; leave it out");
             }
             if (method == DecodeMethod::automatic) {
                 return refuse(change, "the source has no fringes to decode; leave it out");

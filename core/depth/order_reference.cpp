@@ -18,8 +18,9 @@ Error repeats(double period_px, const std::string& why) {
     const auto px = std::to_string(static_cast<int>(std::lround(period_px)));
     return Error{ErrorCode::unsupported, "pattern sequence: its longest period of " + px +
                                              " px repeats " + why +
-                                             "; add a longer period or a Gray code, or give the "
-                                             "order from a depth image"};
+                                             "; add a longer period or a Gray code, give the order "
+                                             "from a depth image, or have it unwrapped in space "
+                                             "(--mode default)"};
 }
 
 }  // namespace
