@@ -78,16 +78,6 @@ struct Chosen {
     std::string note;
 };
 
-// A camera that nobody knows: its image is as wide as it is far.
-Rig nominal_rig(Size image) {
-    Rig rig;
-    rig.camera.size = image;
-    rig.camera.matrix(0, 0) = rig.camera.matrix(1, 1) = image.width;
-    rig.camera.matrix(0, 2) = 0.5 * (image.width - 1);
-    rig.camera.matrix(1, 2) = 0.5 * (image.height - 1);
-    return rig;
-}
-
 int steps_of(const std::vector<double>& phases) { return static_cast<int>(phases.size()); }
 
 // Folders of frames are named as their files where these names tell them apart and name a folder:
@@ -353,8 +343,9 @@ class DecodeRun {
         if (auto ok = write(inside / "height.tiff", capture::encode_tiff(height)); !ok) {
             return ok;
         }
-        const Rig rig =
-            recording_.has_rig() ? recording_.rig() : nominal_rig(recording_.image_size());
+        Rig rig;
+        rig.camera = recording_.has_rig() ? recording_.rig().camera
+                                          : nominal_camera(recording_.image_size());
         if (auto ok = write_exports(options_.exports, relative_->depth(), rig,
                                     chosen_.decoder.average().view(), output_->path() / inside);
             !ok) {

@@ -108,6 +108,15 @@ Result<void> check_interaction(const Mat4d& m) {
 
 }  // namespace
 
+Pinhole nominal_camera(Size image) noexcept {
+    Pinhole camera;
+    camera.size = image;
+    camera.matrix(0, 0) = camera.matrix(1, 1) = image.width;
+    camera.matrix(0, 2) = 0.5 * (image.width - 1);
+    camera.matrix(1, 2) = 0.5 * (image.height - 1);
+    return camera;
+}
+
 Result<void> validate(const Rig& rig) {
     if (auto ok = check_pinhole("camera", rig.camera); !ok) {
         return ok;

@@ -20,8 +20,6 @@ using motion::saw_cells;
 
 // Fewer moving cells than this share of the image are noise or a flicker, not a hand.
 constexpr double kMinMovingShare = 0.002;
-// Following is chosen where its mismatch is below this share of that of standing still.
-constexpr float kFollowAdvantage = 1.0F;
 // Images of a cycle that is over before a hand changes its speed.
 constexpr int kShortCycle = 4;
 // A hand's: from rest to 2 m/s in 0.2 s, at 1 px a mm; px / s^2.
@@ -423,7 +421,7 @@ void MotionEstimator::choose_cells() noexcept {
                     follow += follow_cost_.at(x, y);
                 }
             }
-            const bool follows = age_.at(cx, cy) > 0 && follow < kFollowAdvantage * still;
+            const bool follows = age_.at(cx, cy) > 0 && follow < still;
             follows_.at(cx, cy) = follows ? 1 : 0;
             if (follows) {
                 sum += Vec2f(static_cast<float>(cx), static_cast<float>(cy));

@@ -20,16 +20,6 @@ SpatialUnwrapSettings spatial_of(const DecodeSettings& settings) {
     return {settings.step_limit_rad, settings.min_support, settings.min_component_px};
 }
 
-// A camera that nobody knows: its image is as wide as it is far.
-Pinhole nominal_camera(Size image) {
-    Pinhole camera;
-    camera.size = image;
-    camera.matrix(0, 0) = camera.matrix(1, 1) = image.width;
-    camera.matrix(0, 2) = 0.5 * (image.width - 1);
-    camera.matrix(1, 2) = 0.5 * (image.height - 1);
-    return camera;
-}
-
 // What is dark is masked here.
 DecodeSettings settings_of_phases(const DecodeSettings& paper, bool followed) {
     DecodeSettings settings = paper;

@@ -39,10 +39,7 @@ constexpr double kLeast_mm = 1.0;
 
 Rig RelativeScene::nominal_rig(Size image) {
     Rig rig;
-    rig.camera.size = image;
-    rig.camera.matrix(0, 0) = rig.camera.matrix(1, 1) = image.width;
-    rig.camera.matrix(0, 2) = 0.5 * (image.width - 1);
-    rig.camera.matrix(1, 2) = 0.5 * (image.height - 1);
+    rig.camera = nominal_camera(image);
     // Nominal mm say nothing of what is out of reach.
     rig.working_volume = WorkingVolume{50.0, 6500.0};
     return rig;

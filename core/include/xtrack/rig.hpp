@@ -49,6 +49,12 @@ struct Rig {
     std::optional<Mat3d> camera_from_projector_rgb;
 };
 
+/// A camera that nobody has calibrated: its image is as wide as what it sees is far, the principal
+/// point in the middle, no distortion.
+/// @thread any
+/// @since 0.1
+[[nodiscard]] Pinhole nominal_camera(Size image) noexcept;
+
 /// Checks what a computation relies on: sizes, finite numbers, focal lengths over 0, matrices that
 /// can be inverted, a rotation that is one, a baseline that is not zero, near before far.
 /// @return an Error that names the field as rig.yaml spells it, and the mend
