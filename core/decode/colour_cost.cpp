@@ -26,6 +26,8 @@ void colour_cost_scalar(const ColourCost& row) noexcept {
     const auto contrast_of = [](const ColourModel::Light& light) {
         return std::sqrt(light[1] * light[1] + light[2] * light[2]) / light[0];
     };
+    const float transfer = row.has_coarse ? row.transfer : 1.0F;
+    const float same_noise = equal_noise(transfer);
     const auto fine_period = static_cast<float>(row.fine.period_px);
     const auto coarse_period = static_cast<float>(row.coarse.period_px);
     for (int i = 0; i < row.count; ++i) {
@@ -45,7 +47,7 @@ void colour_cost_scalar(const ColourCost& row) noexcept {
         float apart = (coordinate_px(fine, row.fine) - reference_px) / fine_period;
         apart -= std::floor(apart + 0.5F);
         apart = std::isnan(reference_px) ? 0.0F : apart;
-        const float between = fine_contrast - (row.has_coarse ? row.fade : 1.0F) * contrast;
+        const float between = (fine_contrast - transfer * contrast) * same_noise;
         const float cost = kApart * apart * apart + kContrast * between * between;
         if (row.fine_contrast != nullptr) {
             row.fine_contrast[i] = fine_contrast;

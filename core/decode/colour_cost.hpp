@@ -30,7 +30,7 @@ struct ColourCost {
     ColourModel::Inverse inverse = ColourModel::Inverse::Identity();  ///< of the surface
     ColourModel::Inverse coarse_inverse = ColourModel::Inverse::Identity();
     float contrast = 1.0F;  ///< of the surface
-    float fade = 1.0F;      ///< of the surface
+    float transfer = 1.0F;  ///< of the surface
     ColourPeriod fine;
     ColourPeriod coarse;
     bool has_coarse = false;  ///< else the surface's contrast stands for the coarse one's

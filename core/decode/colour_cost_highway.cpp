@@ -64,6 +64,8 @@ void measure(const ColourCost& row) {
     const V fine_period = hn::Set(d, static_cast<float>(row.fine.period_px));
     const V coarse_period = hn::Set(d, static_cast<float>(row.coarse.period_px));
     const V most = hn::Set(d, kMostColourCost);
+    const float transfer = row.has_coarse ? row.transfer : 1.0F;
+    const V same_noise = hn::Set(d, colour_cost_weights::equal_noise(transfer));
     for (int i = 0; i < row.count; i += lanes) {
         // The last vector overlaps the one before it instead of running over the end.
         const int at = i + lanes <= row.count ? i : row.count - lanes;
@@ -82,7 +84,7 @@ void measure(const ColourCost& row) {
             const V turns = nearest_whole(hn::Div(hn::Sub(reference, x), coarse_period));
             const V unwrapped = hn::MulAdd(coarse_period, turns, x);
             reference = hn::IfThenElse(hn::Eq(reference, reference), unwrapped, x);
-            contrast = hn::Mul(contrast, hn::Set(d, row.fade));
+            contrast = hn::Mul(contrast, hn::Set(d, transfer));
         }
         V apart = hn::Div(hn::Sub(fine_px, reference), fine_period);
         apart = hn::Sub(apart, nearest_whole(apart));
@@ -90,7 +92,7 @@ void measure(const ColourCost& row) {
         if (row.fine_contrast != nullptr) {
             hn::StoreU(fine_contrast, d, row.fine_contrast + at);
         }
-        const V between = hn::Sub(fine_contrast, contrast);
+        const V between = hn::Mul(hn::Sub(fine_contrast, contrast), same_noise);
         const V apart_cost =
             hn::Mul(hn::Set(d, colour_cost_weights::kApart), hn::Mul(apart, apart));
         const V cost = hn::MulAdd(hn::Set(d, colour_cost_weights::kContrast),

@@ -16,7 +16,9 @@ constexpr float kTurn = 2.0F * std::numbers::pi_v<float>;
 // Skin of any tone reflects about twice as much red as blue (haemoglobin, melanin).
 constexpr std::array<float, 3> kSkin{1.4F, 0.95F, 0.75F};
 constexpr float kSkinContrast = 0.7F;
-constexpr float kLikeSkin = 0.1F;  // nearer in E: light may go through it
+// Nearer to it in E: light may go through; once it does, farther as well.
+constexpr float kLikeSkin = 0.1F;
+constexpr float kStillLikeSkin = 0.13F;
 // Grey, and as many tints around it, of which skin is one, that all neighbours are as far apart.
 constexpr std::size_t kTints = 7;
 
@@ -34,7 +36,7 @@ constexpr float kBelievedPixels = 20.0F;
 constexpr float kDamping = 0.5F;
 constexpr float kSureCost = 0.15F;   // pixels of more do not teach
 constexpr float kPairWeight = 0.3F;  // of what two periods say, against what the contrast says
-constexpr float kFade = 0.5F;        // of what a fit knows, from frame to frame
+constexpr float kKept = 0.5F;        // of what a fit knows, from frame to frame
 
 // What a contrast that is not the usual one counts beside one that changes with the phase.
 constexpr float kUnusualContrast = 0.05F;
@@ -218,7 +220,7 @@ void ColourPalette::measure(const Entry& entry, const ColourSamples& samples, fl
     row.inverse = entry.inverse;
     row.coarse_inverse = entry.coarse_inverse;
     row.contrast = entry.surface.contrast;
-    row.fade = entry.surface.fade;
+    row.transfer = entry.surface.transfer;
     row.fine = fine_;
     row.has_coarse = coarse_.has_value();
     row.coarse = coarse_.value_or(ColourPeriod{});
@@ -428,7 +430,7 @@ void ColourPalette::draw_border(int cell_x, int cell_y, const ColourSamples& sam
 
 void ColourPalette::refine() noexcept {
     for (std::size_t k = 0; k < used_; ++k) {
-        entries_[k].fit.fade(frames_ < kFirstFrames ? 0.0F : kFade);
+        entries_[k].fit.forget(frames_ < kFirstFrames ? 0.0F : kKept);
     }
     for (int sy = 0; sy < samples_.height; ++sy) {
         for (int sx = 0; sx < samples_.width; ++sx) {
@@ -459,15 +461,14 @@ void ColourPalette::refine() noexcept {
     for (std::size_t k = 0; k < used_; ++k) {
         // Half a step: which cells are a surface's changes with what is believed of it.
         Entry& entry = entries_[k];
+        const ColourSurface& now = entry.surface;
+        const float from_skin =
+            std::hypot(now.log_gain[0] - skin.log_gain[0], now.log_gain[1] - skin.log_gain[1]);
+        const bool is_skin = from_skin < (now.transfer < 1.0F ? kStillLikeSkin : kLikeSkin);
         ColourSurface found =
-            entry.fit.solve(entry.surface, kBelievedPixels + kDamping * entry.fit.pixels());
+            entry.fit.solve(now, kBelievedPixels + kDamping * entry.fit.pixels(), is_skin);
         if (!coarse_) {
             keep_near(entry.given, found.log_gain);
-        }
-        if (std::hypot(found.log_gain[0] - skin.log_gain[0], found.log_gain[1] - skin.log_gain[1]) >
-            kLikeSkin) {
-            found.fade = 1.0F;
-            found.log_fade = {};
         }
         set(k, found);
     }

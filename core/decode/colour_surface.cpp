@@ -18,22 +18,22 @@ constexpr float kOtherContrast = 0.15F;
 // Only the second harmonic tells tint from gain, and rooms are dark beside the projector: that
 // there is no tint is believed for this share of the pixels.
 constexpr float kTintShare = 1.0F;
-// Most surfaces are opaque: that they fade no colour more than another is believed for as many.
-constexpr float kFadeShare = 0.1F;
+// That no colour is washed out more than another is believed for this share of the pixels.
+constexpr float kTransferShare = 0.1F;
 constexpr float kLeastContrast = 0.1F;
 constexpr float kMostContrast = 1.05F;     // 1, and what noise adds
 constexpr float kMostSeenContrast = 1.2F;  // of one pixel
 constexpr float kMostLogGain = 0.4F;       // |E|; colours 3 times apart, beyond it one is missing
 constexpr float kMostTint = 0.5F;
-constexpr float kLeastFade = 0.3F;
-constexpr float kMostLogFade = 0.2F;
+constexpr float kLeastTransfer = 0.3F;
+constexpr float kMostLogTransfer = 0.2F;
 
 // Where the unknowns are.
 constexpr int kFineContrast = 0;
 constexpr int kCoarseContrast = 1;
 constexpr int kGain = 2;
 constexpr int kTint = 4;
-constexpr int kFade = 6;
+constexpr int kTransfer = 6;
 
 // 2 Re(c e^{-ip}): what a colour has of a deviation.
 float of_colour(const std::array<float, 2>& c, float cosine, float sine) noexcept {
@@ -44,7 +44,8 @@ float of_colour(const std::array<float, 2>& c, float cosine, float sine) noexcep
 float rest(const std::array<float, 8>& slope, const ColourSurface& believed) noexcept {
     return slope[kGain] * believed.log_gain[0] + slope[kGain + 1] * believed.log_gain[1] +
            slope[kTint] * believed.tint[0] + slope[kTint + 1] * believed.tint[1] +
-           slope[kFade] * believed.log_fade[0] + slope[kFade + 1] * believed.log_fade[1];
+           slope[kTransfer] * believed.log_transfer[0] +
+           slope[kTransfer + 1] * believed.log_transfer[1];
 }
 
 // What a contrast counts that is off from what is believed.
@@ -90,7 +91,7 @@ Result<ColourModel> ColourModel::create(const std::array<double, 3>& phases_rad,
 
 ColourModel::Inverse ColourModel::coarse_inverse(const ColourSurface& surface) const noexcept {
     ColourSurface opaque = surface;
-    opaque.log_fade = {};
+    opaque.log_transfer = {};
     return inverse(opaque);
 }
 
@@ -100,7 +101,7 @@ ColourModel::Inverse ColourModel::inverse(const ColourSurface& surface) const no
         const auto k = static_cast<std::size_t>(row);
         const float gain = std::exp(of_colour(surface.log_gain, cosine_[k], sine_[k]));
         const float tint = of_colour(surface.tint, cosine_[k], sine_[k]);
-        const float fringe = gain * std::exp(of_colour(surface.log_fade, cosine_[k], sine_[k]));
+        const float fringe = gain * std::exp(of_colour(surface.log_transfer, cosine_[k], sine_[k]));
         forward.row(row) << gain * (1.0F + tint), fringe * cosine_[k], -fringe * sine_[k];
     }
     return forward.inverse();
@@ -173,39 +174,40 @@ void ColourFit::add_pair(const ColourSurface& believed, const ColourModel::Light
         return;
     }
     // Over a hand a long period has few phases: where its contrast is another, the light may be.
-    const float contrast = coarse.tail<2>().norm() / coarse[0];
-    if (contrast < kMostSeenContrast) {
+    if (coarse.tail<2>().norm() < kMostSeenContrast * coarse[0]) {
+        const float contrast = coarse.tail<2>().norm() / coarse[0];
         const Row slope{0.0F, 1.0F};
-        const float off = contrast - believed.contrast / believed.fade;
+        const float off = contrast - believed.contrast / believed.transfer;
         add_equation(slope, contrast, weight * usual(off));
     }
     // kappa times the error of the phase has the noise of the contrast.
     const float kappa = believed.contrast;
-    const auto phase_slope = [&](const ColourModel::Light& seen) {
+    const auto phase_slope = [&](const ColourModel::Light& seen, float transfer) {
         const float amplitude = std::sqrt(seen[1] * seen[1] + seen[2] * seen[2]);
         const float c = seen[1] / amplitude;
         const float s = seen[2] / amplitude;
+        const float first = -2.0F * transfer;  // in a larger contrast the same weighs less
         const float c2 = kappa * (c * c - s * s);
         const float s2 = kappa * 2.0F * c * s;
-        return Row{0.0F, 0.0F, -2.0F * s - s2, -2.0F * c + c2, -2.0F * s, -2.0F * c, -s2, c2};
+        return Row{0.0F, 0.0F, first * s - s2, first * c + c2, first * s, first * c, -s2, c2};
     };
-    Row slope = phase_slope(coarse);
-    slope[kFade] = slope[kFade + 1] = 0.0F;
-    const Row of_fine = phase_slope(fine);
+    Row slope = phase_slope(coarse, believed.transfer);
+    slope[kTransfer] = slope[kTransfer + 1] = 0.0F;
+    const Row of_fine = phase_slope(fine, 1.0F);
     for (std::size_t i = 0; i < kUnknowns; ++i) {
         slope[i] -= ratio * of_fine[i];
     }
     add_equation(slope, kappa * ahead_rad + rest(slope, believed), weight);
 }
 
-void ColourFit::fade(float share) noexcept {
+void ColourFit::forget(float share) noexcept {
     for (float& sum : sums_) {
         sum *= share;
     }
 }
 
-ColourSurface ColourFit::solve(const ColourSurface& believed,
-                               float believed_pixels) const noexcept {
+ColourSurface ColourFit::solve(const ColourSurface& believed, float believed_pixels,
+                               bool may_transfer) const noexcept {
     constexpr int kCount = static_cast<int>(kUnknowns);
     Eigen::Matrix<float, kCount, kCount> normal;
     Eigen::Matrix<float, kCount, 1> right;
@@ -219,28 +221,36 @@ ColourSurface ColourFit::solve(const ColourSurface& believed,
         right(i) = sums_[next++];
     }
     // What nothing was seen of, stays.
-    const bool pairs = normal(kCoarseContrast, kCoarseContrast) > 0.0F;
+    const bool transfers = may_transfer && normal(kCoarseContrast, kCoarseContrast) > 0.0F;
     constexpr float kSurely = 1e6F;
-    const float tint = believed_pixels + kTintShare * sums_[0];
-    const float fade = pairs ? believed_pixels + kFadeShare * sums_[0] : kSurely;
-    Eigen::Matrix<float, kCount, 1> weights;
-    weights << believed_pixels, believed_pixels, believed_pixels, believed_pixels, tint, tint, fade,
-        fade;
     Eigen::Matrix<float, kCount, 1> prior;
-    prior << believed.contrast, believed.contrast / believed.fade, believed.log_gain[0],
-        believed.log_gain[1], 0.0F, 0.0F, 0.0F, 0.0F;
-    normal.diagonal() += weights;
+    prior << believed.contrast, believed.contrast / believed.transfer, believed.log_gain[0],
+        believed.log_gain[1], believed.tint[0], believed.tint[1], believed.log_transfer[0],
+        believed.log_transfer[1];
+    if (!may_transfer) {
+        prior.tail<2>().setZero();
+    }
+    Eigen::Matrix<float, kCount, 1> weights =
+        Eigen::Matrix<float, kCount, 1>::Constant(believed_pixels);
+    weights.tail<2>().setConstant(transfers ? believed_pixels : kSurely);
     right += weights.cwiseProduct(prior);
+    weights.segment<2>(kTint).array() += kTintShare * sums_[0];
+    weights.tail<2>().array() += kTransferShare * sums_[0];
+    normal.diagonal() += weights;
     const Eigen::Matrix<float, kCount, 1> found = normal.ldlt().solve(right);
     if (!found.allFinite()) {
         return believed;
     }
     ColourSurface surface;
     surface.contrast = std::clamp(found[kFineContrast], kLeastContrast, kMostContrast);
-    if (pairs) {
+    if (may_transfer) {
+        surface.transfer = believed.transfer;
+        surface.log_transfer = believed.log_transfer;
+    }
+    if (transfers) {
         const float coarse = std::max(found[kCoarseContrast], kLeastContrast);
-        surface.fade = std::clamp(surface.contrast / coarse, kLeastFade, 1.0F);
-        surface.log_fade = within(kMostLogFade, found[kFade], found[kFade + 1]);
+        surface.transfer = std::clamp(surface.contrast / coarse, kLeastTransfer, 1.0F);
+        surface.log_transfer = within(kMostLogTransfer, found[kTransfer], found[kTransfer + 1]);
     }
     surface.log_gain = within(kMostLogGain, found[kGain], found[kGain + 1]);
     surface.tint = {std::clamp(found[kTint], -kMostTint, kMostTint),

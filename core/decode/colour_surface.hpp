@@ -23,11 +23,11 @@ namespace xtrack {
 ///   f h_k kappa cos(phi + p_k),  ln h_k = 2 Re(F e^{-ip_k}).
 /// Where only one period is known this is the same as gains and a tint.
 struct ColourSurface {
-    float contrast = 1.0F;            ///< kappa f, that of the fine period
-    std::array<float, 2> log_gain{};  ///< E
-    std::array<float, 2> tint{};      ///< O
-    float fade = 1.0F;                ///< f
-    std::array<float, 2> log_fade{};  ///< F
+    float contrast = 1.0F;                ///< kappa f, that of the fine period
+    std::array<float, 2> log_gain{};      ///< E
+    std::array<float, 2> tint{};          ///< O
+    float transfer = 1.0F;                ///< f, of modulation
+    std::array<float, 2> log_transfer{};  ///< F
 };
 
 /// The colours of a projector and a camera, and the arithmetic of surfaces under them.
@@ -52,7 +52,7 @@ class ColourModel {
     [[nodiscard]] Light light(const std::uint8_t* bgr) const noexcept {
         return projector_from_bgr_ * Light(bgr[0], bgr[1], bgr[2]);
     }
-    /// Of the fine period; contrast and fade are left in.
+    /// Of the fine period; contrast and f are left in.
     [[nodiscard]] Inverse inverse(const ColourSurface& surface) const noexcept;
     /// Of the coarse one.
     [[nodiscard]] Inverse coarse_inverse(const ColourSurface& surface) const noexcept;
@@ -88,17 +88,19 @@ class ColourFit {
     void add(const ColourSurface& believed, const ColourModel::Light& seen, float weight) noexcept;
     /// The same pixel under a second, coarser period, which has a contrast of its own: their phases
     /// must agree.
+    /// @param fine, coarse model.inverse(believed) and model.coarse_inverse(believed) * light
     /// @param ratio of the fine period to the coarse one
     /// @param ahead_rad the coarse phase, less what the fine one says it should be
     void add_pair(const ColourSurface& believed, const ColourModel::Light& fine,
                   const ColourModel::Light& coarse, float ratio, float ahead_rad,
                   float weight) noexcept;
     [[nodiscard]] float pixels() const noexcept { return sums_[0]; }
-    /// One step. What is believed counts as so many pixels. F is zero until there are pairs.
-    [[nodiscard]] ColourSurface solve(const ColourSurface& believed,
-                                      float believed_pixels) const noexcept;
-    void clear() noexcept { fade(0.0F); }
-    void fade(float share) noexcept;
+    /// One step. What is believed counts as so many pixels. f and F stay until there are pairs.
+    /// @param may_transfer false: the surface is opaque, F = 0 and f = 1
+    [[nodiscard]] ColourSurface solve(const ColourSurface& believed, float believed_pixels,
+                                      bool may_transfer = true) const noexcept;
+    void clear() noexcept { sums_.fill(0.0F); }
+    void forget(float share) noexcept;
 
  private:
     static constexpr std::size_t kUnknowns = 8;  // kappa of fine and coarse, E, O, F

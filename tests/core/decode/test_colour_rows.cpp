@@ -132,7 +132,7 @@ TEST(ColourCost, WithoutACoarsePeriodTheReferenceAndTheContrastMustAgree) {
     Scene s = scene({{1.0, 1.0, 1.0}, {}, 0.8}, 64, 24.0);  // a quarter of a period
     s.row.inverse = model.inverse(ColourSurface{});
     s.row.has_coarse = false;
-    s.row.fade = 0.5F;  // has no meaning then
+    s.row.transfer = 0.5F;  // has no meaning then
     s.row.contrast = 0.7F;
     colour_cost(s.row);
     EXPECT_NEAR(s.cost[0], 4.0F * 0.25F * 0.25F + 4.0F * 0.1F * 0.1F, 1e-3F);
@@ -147,7 +147,7 @@ TEST(ColourCost, EveryInstructionSetAgreesWithScalar) {
             s.row.has_coarse = has_coarse;
             s.row.inverse = model.inverse(ColourSurface{0.8F, {0.05F, -0.02F}, {}});
             s.row.coarse_inverse = model.coarse_inverse(ColourSurface{0.8F, {0.03F, -0.02F}, {}});
-            s.row.fade = 0.8F;
+            s.row.transfer = 0.8F;
             colour_cost_scalar(s.row);
             const std::vector<float> expected = s.cost;
             test::for_each_target([&] {

@@ -244,8 +244,8 @@ TEST_P(TranslucentSkin, IsMeasuredAllTheSame) {
 INSTANTIATE_TEST_SUITE_P(Rendered, TranslucentSkin,
                          testing::Values(Translucent{"rendered/static-dual", {0.6, 1.0, 2.0}, 0.6},
                                          Translucent{"rendered/static-gray", {0.6, 1.0, 2.0}, 0.6},
-                                         Translucent{"rendered/static-rgb", {0.3, 0.4, 1.0}, 0.7},
-                                         Translucent{"rendered/static-rgb", {0.6, 1.0, 2.0}, 1.3}));
+                                         Translucent{"rendered/static-rgb", {0.3, 0.4, 1.0}, 0.6},
+                                         Translucent{"rendered/static-rgb", {0.6, 1.0, 2.0}, 1.0}));
 
 // Grey fringes of the same scene say where on the projector each pixel looks. No ramp, no white:
 // the projector is known to be linear, and the colours of skin, clothes and wall average.
