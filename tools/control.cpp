@@ -5,10 +5,12 @@
 #include <cerrno>
 #include <cstddef>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "tools/settings_option.hpp"
+#include "tools/stream.hpp"
 
 #ifndef _WIN32
 #include <poll.h>
@@ -63,11 +65,17 @@ void Control::poll(Session& session, const PipelineView& view) {
     open_ = some.has_value();
     pending_ += some.value_or("\n");
     for (std::size_t end = 0; (end = pending_.find('\n')) != std::string::npos;) {
-        take(pending_.substr(0, end), session);
+        if (!std::exchange(skipping_, false)) {
+            take(pending_.substr(0, end), session);
+        }
         pending_.erase(0, end + 1);
     }
-    if (pending_.size() > kMostLine) {
-        fmt::print(stderr, "xtrack: a line of more than {} characters is no setting\n", kMostLine);
+    if (skipping_) {
+        pending_.clear();
+    } else if (pending_.size() > kMostLine) {
+        skipping_ = true;
+        print_error(
+            fmt::format("xtrack: a line of more than {} characters is no setting\n", kMostLine));
         pending_.clear();
     }
 }
@@ -79,20 +87,22 @@ void Control::take(const std::string& line, Session& session) const {
     DecodeSettings settings = session.decode_settings();
     auto done = apply_settings({line}, settings);
     if (done) {
-        done = check_settings({line}, session.method());
+        done = check_settings({line}, session.method(),
+                              [&](const DecodeField& field) { return session.uses(field); });
     }
     if (done) {
         done = session.set_decode_settings(settings);
     }
     if (!done) {
-        fmt::print(stderr, "xtrack: {}\n", done.error().message);
+        print_error(fmt::format("xtrack: {}\n", done.error().message));
     } else if (settings.mode == CaptureMode::hold) {
-        fmt::print(stderr, "{}: {}\n", line,
-                   paper_ == nullptr ? "nothing was decoded yet that could be held"
-                                     : fmt::format("{:.1f} % of the pixels have depth",
-                                                   percent_with_depth(paper_->depth())));
+        print_error(fmt::format("{}: {}\n", line,
+                                paper_ == nullptr
+                                    ? "nothing was decoded yet that could be held"
+                                    : fmt::format("{:.1f} % of the pixels have depth",
+                                                  percent_with_depth(paper_->depth()))));
     } else {
-        fmt::print(stderr, "{}: from the next image on\n", line);
+        print_error(fmt::format("{}: from the next image on\n", line));
     }
 }
 

@@ -21,6 +21,7 @@ class Control {
 
     const PaperDecoder* paper_ = nullptr;  // on hold no view has it
     std::string pending_;                  // a line whose end has not come
+    bool skipping_ = false;                // the rest of a line that is too long
     bool open_ = true;
 };
 

@@ -37,7 +37,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of less, images grow darker toward white: somebody corrected too much.
+// Projectors have 1.8 to 2.4, and 1 where that is corrected: less was corrected twice.
 constexpr double kUsualGamma = 0.9;
 
 struct DecodeOptions {
@@ -488,8 +488,10 @@ void add_decode(CLI::App& app, int& exit_status) {
                 return;
             }
         }
-        if (const auto ok = check_settings(options->changes, DecodeMethod::pattern); !ok) {
-            exit_status = usage(ok.error());
+        if (const auto ok =
+                check_settings(options->changes, DecodeMethod::pattern, DepthDecoder::uses);
+            !ok) {
+            exit_status = usage({ok.error().code, "--set " + ok.error().message});
             return;
         }
         if (const std::string why = gamma_complaint(options->gamma); !why.empty()) {

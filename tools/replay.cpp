@@ -27,7 +27,7 @@ void add_replay(CLI::App& app, int& exit_status) {
         }
         choose_decoding(*stream, options);
         if (const auto set = apply_settings(stream->changes, options.decode); !set) {
-            exit_status = usage(set.error());
+            exit_status = usage({set.error().code, "--set " + set.error().message});
             return;
         }
         auto session = Session::open(*folder, options);

@@ -103,7 +103,7 @@ void add_run(CLI::App& app, int& exit_status) {
         }
         choose_decoding(run->stream, options);
         if (const auto set = apply_settings(run->stream.changes, options.decode); !set) {
-            exit_status = usage(set.error());
+            exit_status = usage({set.error().code, "--set " + set.error().message});
             return;
         }
         auto session = open(*run, options);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/settings_option.hpp"
 
+#include <algorithm>
+#include <array>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -10,10 +12,11 @@ namespace xtrack::tools {
 
 namespace {
 
-// What a command decides itself: the order is its business, and nobody would see the maps.
+// The order is the command's business, and nobody would see the maps, of which sigma is one.
 bool is_offered(const DecodeField& field) {
-    const std::string_view name = field.name;
-    return name != "order" && name != "keep_maps";
+    constexpr std::array<std::string_view, 4> kNotOffered{"order", "keep_maps", "read_noise_levels",
+                                                          "electrons_per_level"};
+    return std::find(kNotOffered.begin(), kNotOffered.end(), field.name) == kNotOffered.end();
 }
 
 std::string range_of(const DecodeField& field) {
@@ -54,20 +57,21 @@ Result<void> apply_settings(const std::vector<std::string>& changes, DecodeSetti
         const std::size_t equals = change.find('=');
         if (equals == std::string::npos) {
             return Error{ErrorCode::invalid_argument,
-                         "--set " + change + ": give NAME=VALUE, such as min_modulation=8"};
+                         change + ": give NAME=VALUE, such as min_modulation=8"};
         }
         if (auto set = set_field(settings, std::string_view(change).substr(0, equals),
                                  std::string_view(change).substr(equals + 1));
             !set) {
-            return Error{set.error().code, "--set: " + set.error().message};
+            return Error{set.error().code, set.error().message};
         }
     }
     return {};
 }
 
-Result<void> check_settings(const std::vector<std::string>& changes, DecodeMethod method) {
+Result<void> check_settings(const std::vector<std::string>& changes, DecodeMethod method,
+                            const std::function<bool(const DecodeField&)>& uses) {
     const auto refuse = [](const std::string& change, const char* why) {
-        return Error{ErrorCode::invalid_argument, "--set " + change + ": " + why};
+        return Error{ErrorCode::invalid_argument, change + ": " + why};
     };
     for (const std::string& change : changes) {
         const std::string name = change.substr(0, change.find('='));
@@ -76,21 +80,21 @@ Result<void> check_settings(const std::vector<std::string>& changes, DecodeMetho
                 continue;
             }
             if (!is_offered(field)) {
-                return refuse(change, "is what the command decides itself; leave it out");
+                return refuse(change,
+                              "means nothing here; the command decides it, or nothing it "
+                              "shows depends on it");
             }
             if (method == DecodeMethod::automatic) {
-                return refuse(change, "the source has no fringes to decode; leave it out");
+                return refuse(change, "means nothing here, the source has no fringes to decode");
             }
-            if (method == DecodeMethod::pattern && field.use == FieldUse::paper) {
-                return refuse(change,
-                              "is for fringes that are unwrapped in space; leave it out, or let "
-                              "run or replay unwrap so with --mode default");
+            if (uses(field)) {
+                continue;
             }
-            if (method == DecodeMethod::paper && field.use == FieldUse::pattern) {
-                return refuse(change,
-                              "means nothing where fringes are unwrapped in space, as without a "
-                              "rig or with --mode; leave it out");
-            }
+            return refuse(change, method == DecodeMethod::paper
+                                      ? "means nothing where fringes are unwrapped in space, as "
+                                        "without a rig or with --mode"
+                                      : "is for fringes that are unwrapped in space, which run and "
+                                        "replay do with --mode default");
         }
     }
     return {};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,10 @@ void add_settings_option(CLI::App& command, std::vector<std::string>& changes);
 
 /// Whether all of them mean something to what decodes.
 /// @param method Session::method(), or how a command decodes
+/// @param uses whether the decoder at hand looks at a field
 /// @errors invalid_argument: one that would do nothing
 [[nodiscard]] Result<void> check_settings(const std::vector<std::string>& changes,
-                                          DecodeMethod method);
+                                          DecodeMethod method,
+                                          const std::function<bool(const DecodeField&)>& uses);
 
 }  // namespace xtrack::tools

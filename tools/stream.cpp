@@ -43,9 +43,6 @@ EventFormat format_of(const std::string& name) {
     return name == "text" ? EventFormat::text : EventFormat::none;
 }
 
-/// Where stderr is closed or full nothing can be said any more, and the exit status must do.
-void print_error(const std::string& text) { (void)std::fputs(text.c_str(), stderr); }
-
 /// Ctrl-C, SIGTERM and a closed terminal end the session in order: what is open is cancelled,
 /// statistics are printed. So does an answer that cannot be written: nobody would see the rest.
 class StopOnInterrupt {
@@ -162,9 +159,10 @@ Result<void> check_metric(const Session& session, const StreamOptions& options) 
 }  // namespace
 
 Result<void> check_stream(const Session& session, const StreamOptions& options) {
-    if (auto means_something = check_settings(options.changes, session.method());
-        !means_something) {
-        return means_something;
+    const auto used = check_settings(options.changes, session.method(),
+                                     [&](const DecodeField& field) { return session.uses(field); });
+    if (!used) {
+        return Error{used.error().code, "--set " + used.error().message};
     }
     if (session.decode_settings().mode == CaptureMode::hold) {
         return Error{
@@ -225,6 +223,8 @@ int play(Session& session, const StreamOptions& options, Pace pace, bool whole, 
     }
     return 0;
 }
+
+void print_error(const std::string& text) { (void)std::fputs(text.c_str(), stderr); }
 
 int fail(const Error& error) {
     print_error("xtrack: " + error.message + "\n");

@@ -49,6 +49,9 @@ void choose_decoding(const StreamOptions& stream, SessionOptions& options);
 int play(Session& session, const StreamOptions& options, Pace pace, bool whole,
          std::size_t items = 0);
 
+/// Where stderr is closed or full nothing can be said any more, and the exit status must do.
+void print_error(const std::string& text);
+
 /// Print `xtrack: message` on stderr. @return the exit status of a failure, 1, or of wrong usage, 2
 int fail(const Error& error);
 int usage(const Error& error);

@@ -58,6 +58,7 @@ using S = DecodeSettings;
 constexpr auto kBoth = FieldUse::both;
 constexpr auto kPattern = FieldUse::pattern;
 constexpr auto kPaper = FieldUse::paper;
+constexpr auto kPhases = FieldUse::phases;
 constexpr std::array<DecodeField, 17> kFields{{
     number<&S::min_modulation>(kBoth, "min_modulation", "grey levels", 0.0, 127.0,
                                "pixels of less fringe amplitude are masked"),
@@ -69,16 +70,17 @@ constexpr std::array<DecodeField, 17> kFields{{
     number<&S::gray_edge_guard>(kPattern, "gray_edge_guard", "of white - black", 0.0, 0.45,
                                 "Gray code bits nearer to their threshold are masked"),
     choice<&S::motion>(kBoth, "motion", kMotions, "what is done about things that move"),
-    number<&S::motion_tolerance>(kBoth, "motion_tolerance", "amplitudes", 0.05, 10.0,
+    number<&S::motion_tolerance>(kPhases, "motion_tolerance", "amplitudes", 0.05, 10.0,
                                  "pixels that change by more between two cycles are masked"),
-    whole<&S::max_motion_px>(kBoth, "max_motion_px", "px", 8.0, 400.0,
+    whole<&S::max_motion_px>(kPhases, "max_motion_px", "px", 8.0, 400.0,
                              "largest move within a cycle"),
     number<&S::read_noise_levels>(kPattern, "read_noise_levels", "grey levels", 0.0, 20.0,
                                   "the camera's noise in the dark, rms"),
     number<&S::electrons_per_level>(kPattern, "electrons_per_level", "electrons", 1.0, 1e5,
                                     "light that makes one grey level"),
     choice<&S::keep_maps>(kBoth, "keep_maps", kSwitch, "keep phase, modulation and the like"),
-    whole<&S::threads>(kBoth, "threads", "", 1.0, 16.0, "threads that share the rows of an image"),
+    whole<&S::threads>(kPhases, "threads", "", 1.0, 16.0,
+                       "threads that share the rows of an image"),
     choice<&S::mode>(kPaper, "mode", kModes, "which images a decode is made of"),
     number<&S::step_limit_rad>(kPaper, "step_limit_rad", "rad", 0.1, 3.1,
                                "steeper steps between neighbours part surfaces"),

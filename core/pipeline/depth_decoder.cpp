@@ -143,6 +143,7 @@ DecodeStatus DepthDecoder::Impl::push(const FramePtr& frame) noexcept {
         return reject(RejectReason::no_colour);
     }
     last_stamp = frame->stamp;
+    newest = frame;
     window.push(frame);
     if (motion) {
         set_phase_gradient();
@@ -165,20 +166,21 @@ DecodeStatus DepthDecoder::Impl::push(const FramePtr& frame) noexcept {
     return {DecodeState::depth_ready, RejectReason::none};
 }
 
-void DepthDecoder::Impl::decode(const Frame& newest) noexcept {
+void DepthDecoder::Impl::decode(const Frame& frame) noexcept {
+    before.reset();
     moving_depth_mm = motion && motion->moving() ? find_moving_depth_mm() : 0.0;
-    oldest_image = newest.stamp;
+    oldest_image = frame.stamp;
     if (palette) {
         tell_surfaces();
     }
     if (plan.carrier()) {
-        find_carrier(newest);
+        find_carrier(frame);
     }
     const std::span<const int> edges = window.row_edges(size.height);
     for (std::size_t n = 0; n + 1 < edges.size(); ++n) {
         decode_rows(edges[n], edges[n + 1]);
     }
-    register_depth(newest);
+    register_depth(frame);
 }
 
 void DepthDecoder::Impl::find_carrier(const Frame& frame) noexcept {
@@ -196,11 +198,11 @@ void DepthDecoder::Impl::find_carrier(const Frame& frame) noexcept {
     }
 }
 
-void DepthDecoder::Impl::register_depth(const Frame& newest) noexcept {
+void DepthDecoder::Impl::register_depth(const Frame& frame) noexcept {
     Images images;
     const Frame* centre = nullptr;
     if (motion && settings.motion == MotionHandling::follow) {
-        centre = &newest;
+        centre = &frame;
     } else if (!plan.sines.empty() &&
                choose_images(plan.sines.size() - 1, size.height / 2, images)) {
         std::sort(images.frames.begin(), images.frames.begin() + images.taps.count,
@@ -214,17 +216,17 @@ void DepthDecoder::Impl::register_depth(const Frame& newest) noexcept {
             return a.stamp != b.stamp ? a.stamp < b.stamp : a.sequence < b.sequence;
         };
         for (const int candidate : plan.needed) {
-            const Frame* frame = window.newest(candidate);
-            std::size_t before = 0;
+            const Frame* image = window.newest(candidate);
+            std::size_t earlier = 0;
             for (const int other : plan.needed) {
-                before += older(*window.newest(other), *frame) ? 1U : 0U;
+                earlier += older(*window.newest(other), *image) ? 1U : 0U;
             }
-            if (before == plan.needed.size() / 2 || centre == nullptr) {
-                centre = frame;
+            if (earlier == plan.needed.size() / 2 || centre == nullptr) {
+                centre = image;
             }
         }
     }
-    depth.span = newest.stamp - oldest_image;
+    depth.span = frame.stamp - oldest_image;
     depth.stamp = centre->stamp;
     depth.sequence = centre->sequence;
     phase_map.stamp = centre->stamp;
@@ -258,16 +260,16 @@ Result<DepthDecoder> DepthDecoder::create(const Rig& rig, const PatternSequence&
                          std::to_string(image.height) + " pixels; give 1 to " +
                          std::to_string(kMaxImageSide_px) + " a side, and 64 million in all"};
     }
-    auto plan = DecodePlan::create(patterns, settings);
-    if (!plan) {
-        return plan.error();
-    }
     if (settings.order != OrderSource::none && rig.projector &&
         rig.projector->size != patterns.projector_size) {
         return Error{ErrorCode::invalid_argument,
                      "projector_size of the rig and of the pattern sequence differ"};
     }
     return base::setting_up("DepthDecoder::create", [&]() -> Result<DepthDecoder> {
+        auto plan = DecodePlan::create(patterns, settings);
+        if (!plan) {
+            return plan.error();
+        }
         auto impl = std::make_unique<Impl>(*std::move(plan), settings, image);
         impl->rig = rig;
         impl->patterns = patterns;
@@ -286,7 +288,8 @@ DepthDecoder::~DepthDecoder() = default;
 DecodeStatus DepthDecoder::push(const FramePtr& frame) noexcept { return impl_->push(frame); }
 
 DecodeStatus DepthDecoder::decode_again() noexcept {
-    if (!impl_->last_decoded) {
+    // What moves is known of the newest image alone.
+    if (!impl_->last_decoded || impl_->newest != impl_->last_decoded) {
         return {DecodeState::need_more, RejectReason::none};
     }
     impl_->decode(*impl_->last_decoded);
@@ -312,25 +315,35 @@ Result<void> DepthDecoder::set_settings(const DecodeSettings& settings) {
     }
     Impl& fresh = *made->impl_;
     fresh.window = std::move(impl_->window);
+    fresh.newest = impl_->newest;
     fresh.last_decoded = std::move(impl_->last_decoded);
     fresh.last_stamp = impl_->last_stamp;
     if (!fresh.order_px.empty() && !impl_->order_px.empty()) {
         fresh.order_px = std::move(impl_->order_px);
     }
-    if (fresh.palette) {
+    const bool same_places = fresh.geometry.has_value() == impl_->geometry.has_value();
+    if (fresh.palette && same_places) {
         fresh.palette = std::move(impl_->palette);
     }
+    if (same_places) {
+        fresh.carrier = impl_->carrier;
+    }
+    fresh.before = impl_->before ? std::move(impl_->before) : std::move(impl_);
     impl_ = std::move(made->impl_);
     return {};
 }
 
-const DecodeSettings& DepthDecoder::settings() const noexcept { return impl_->settings; }
-const DepthFrame& DepthDecoder::depth() const noexcept { return impl_->depth; }
-const PhaseMap& DepthDecoder::phase() const noexcept { return impl_->phase_map; }
-const Image<float>& DepthDecoder::coordinate_px() const noexcept { return impl_->coordinate; }
-const Image<float>& DepthDecoder::sigma_mm() const noexcept { return impl_->sigma; }
+bool DepthDecoder::uses(const DecodeField& field) noexcept { return field.use != FieldUse::paper; }
 
-const Image<float>& DepthDecoder::average() const noexcept { return impl_->average; }
+const DecodeSettings& DepthDecoder::settings() const noexcept { return impl_->settings; }
+const DepthFrame& DepthDecoder::depth() const noexcept { return impl_->results().depth; }
+const PhaseMap& DepthDecoder::phase() const noexcept { return impl_->results().phase_map; }
+const Image<float>& DepthDecoder::coordinate_px() const noexcept {
+    return impl_->results().coordinate;
+}
+const Image<float>& DepthDecoder::sigma_mm() const noexcept { return impl_->results().sigma; }
+
+const Image<float>& DepthDecoder::average() const noexcept { return impl_->results().average; }
 
 Result<void> DepthDecoder::set_order_depth(ImageView<const std::uint16_t> depth, double unit_mm) {
     if (impl_->order_px.empty()) {
@@ -353,6 +366,7 @@ Result<void> DepthDecoder::set_order_depth(ImageView<const std::uint16_t> depth,
 
 void DepthDecoder::reset() noexcept {
     impl_->window.clear();
+    impl_->newest.reset();
     impl_->last_decoded.reset();
     if (impl_->motion) {
         impl_->motion->clear();

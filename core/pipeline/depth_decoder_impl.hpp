@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -50,8 +51,8 @@ struct DepthDecoder::Impl {
 
     Result<void> prepare();
     DecodeStatus push(const FramePtr& frame) noexcept;
-    void decode(const Frame& newest) noexcept;
-    void register_depth(const Frame& newest) noexcept;
+    void decode(const Frame& frame) noexcept;
+    void register_depth(const Frame& frame) noexcept;
 
     void decode_rows(int begin, int end) noexcept;
     void decode_one_row(int y, Scratch& scratch) noexcept;
@@ -104,6 +105,8 @@ struct DepthDecoder::Impl {
                         const RowOut& out) noexcept;
     void mask_disagreeing(int y, int begin, int end, bool follow, const RowOut& out) noexcept;
 
+    [[nodiscard]] const Impl& results() const noexcept { return before ? *before : *this; }
+
     Rig rig;  // this and the next: to be made anew
     PatternSequence patterns;
     DecodeSettings settings;
@@ -120,8 +123,12 @@ struct DepthDecoder::Impl {
     OrderReference order;
     Image<float> order_px;  // from set_order_depth()
     std::optional<Stamp> last_stamp;
+    FramePtr newest;        // pushed and taken
     FramePtr last_decoded;  // the newest of the last decode
-    Stamp oldest_image;     // of those that the depth at hand is made of
+    // What was there before the settings changed: its results are those of now until the next
+    // decode.
+    std::unique_ptr<Impl> before;
+    Stamp oldest_image;  // of those that the depth at hand is made of
     DepthFrame depth;
     PhaseMap phase_map;
     Image<float> coordinate;

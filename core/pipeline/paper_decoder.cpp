@@ -20,14 +20,20 @@ SpatialUnwrapSettings spatial_of(const DecodeSettings& settings) {
     return {settings.step_limit_rad, settings.min_support, settings.min_component_px};
 }
 
-// What is dark is masked here.
+// What is dark is masked here; all that a change of would be no change of phases is left out.
 DecodeSettings settings_of_phases(const DecodeSettings& paper, bool followed) {
-    DecodeSettings settings = paper;
-    settings.taps = PhaseTaps::automatic;
+    DecodeSettings settings;
     settings.order = OrderSource::none;
-    settings.motion = followed ? paper.motion : MotionHandling::off;
     settings.keep_maps = true;
     settings.min_modulation = 0.0;
+    settings.mask_saturated = paper.mask_saturated;
+    settings.threads = paper.threads;
+    settings.motion = MotionHandling::off;
+    if (followed) {
+        settings.motion = paper.motion;
+        settings.motion_tolerance = paper.motion_tolerance;
+        settings.max_motion_px = paper.max_motion_px;
+    }
     return settings;
 }
 
@@ -144,28 +150,33 @@ Result<PaperDecoder> PaperDecoder::create(const PatternSequence& patterns, Size 
         if (rig != nullptr) {
             impl->rig = *rig;
         }
-        if (auto ready = impl->prepare_motion(settings); !ready) {
+        if (auto ready = impl->prepare_phases_and_scene(settings); !ready) {
             return ready.error();
         }
         return PaperDecoder(std::move(impl));
     });
 }
 
-// For periods that are one image, and for steps whose motion is followed: with a rig DepthDecoder
-// is there for hands that move.
-Result<void> PaperDecoder::Impl::prepare_motion(const DecodeSettings& wanted) {
+// Phases are a DepthDecoder's where a period is one image, and where the motion of three steps is
+// followed: with a rig DepthDecoder is there for hands that move. Nothing changes on an Error.
+Result<void> PaperDecoder::Impl::prepare_phases_and_scene(const DecodeSettings& wanted) {
     const bool steps = period->kind == PeriodKind::steps;
     const bool followed =
         steps && !geometry && plan.pattern_count == 3 && wanted.motion == MotionHandling::follow;
     const DecodeSettings of_phases = settings_of_phases(wanted, followed);
+    std::optional<StillScene> new_scene;
+    if (wanted.motion != MotionHandling::off && !scene) {
+        new_scene.emplace(size);
+    }
     if (steps && !followed) {
         phases.reset();
         from_phases = false;
     } else if (phases) {
-        phases_are_stale = phases_are_stale || phases->settings() != of_phases;
+        const bool other = phases->settings() != of_phases;
         if (auto set = phases->set_settings(of_phases); !set) {
             return set;
         }
+        phases_are_stale = phases_are_stale || other;
     } else {
         auto made = DepthDecoder::create(rig, patterns, size, of_phases);
         if (!made) {
@@ -175,8 +186,8 @@ Result<void> PaperDecoder::Impl::prepare_motion(const DecodeSettings& wanted) {
     }
     if (wanted.motion == MotionHandling::off) {
         scene.reset();
-    } else if (!scene) {
-        scene.emplace(size);
+    } else if (new_scene) {
+        scene = std::move(new_scene);
     }
     return {};
 }
@@ -216,8 +227,8 @@ DecodeStatus PaperDecoder::Impl::push(const FramePtr& frame) noexcept {
     const bool burst = settings.mode == CaptureMode::burst;
     if (phases && !(steps && burst)) {  // a burst is of its own images, whatever was before it
         const DecodeStatus status = phases->push(frame);
-        phases_are_stale = false;
         phase_ready = status.state == DecodeState::depth_ready;
+        phases_are_stale = phases_are_stale && !phase_ready;
         if (!phase_ready && !steps) {
             return status;
         }
@@ -249,9 +260,6 @@ DecodeStatus PaperDecoder::decode_again() noexcept {
     if (!impl_->decoded) {
         return {DecodeState::need_more, RejectReason::none};
     }
-    if (impl_->from_phases && std::exchange(impl_->phases_are_stale, false)) {
-        (void)impl_->phases->decode_again();
-    }
     impl_->decode(false);
     return {DecodeState::depth_ready, RejectReason::none};
 }
@@ -261,7 +269,7 @@ Result<void> PaperDecoder::set_settings(const DecodeSettings& settings) {
         return valid;
     }
     auto set = base::setting_up("PaperDecoder::set_settings",
-                                [&] { return impl_->prepare_motion(settings); });
+                                [&] { return impl_->prepare_phases_and_scene(settings); });
     if (set) {
         set = impl_->unwrapper.set_settings(spatial_of(settings));
     }
@@ -270,6 +278,9 @@ Result<void> PaperDecoder::set_settings(const DecodeSettings& settings) {
     }
     if (settings.mode == CaptureMode::burst && impl_->settings.mode != CaptureMode::burst) {
         impl_->window.clear();  // a decode has used them
+    }
+    if (settings.keep_maps && !impl_->settings.keep_maps) {
+        impl_->points.fill(kNone);  // they are of a decode long ago
     }
     impl_->settings = settings;
     if (settings.mode == CaptureMode::hold) {
@@ -305,6 +316,16 @@ void PaperDecoder::reset() noexcept {
 
 int PaperDecoder::frames_needed() const noexcept {
     return static_cast<int>(impl_->period->patterns.size());
+}
+
+bool PaperDecoder::uses(const DecodeField& field) const noexcept {
+    switch (field.use) {
+        case FieldUse::both:
+        case FieldUse::paper: return true;
+        case FieldUse::pattern: return false;
+        case FieldUse::phases: return impl_->phases.has_value();
+    }
+    return false;
 }
 
 const DecodeSettings& PaperDecoder::settings() const noexcept { return impl_->settings; }

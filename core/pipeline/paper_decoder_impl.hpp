@@ -23,7 +23,7 @@ struct PaperDecoder::Impl {
     Impl(DecodePlan decode_plan, Size image, const DecodeSettings& paper_settings,
          SpatialUnwrapper made, std::optional<Triangulation> rig_geometry, const Pinhole& camera);
 
-    Result<void> prepare_motion(const DecodeSettings& wanted);
+    Result<void> prepare_phases_and_scene(const DecodeSettings& wanted);
     DecodeStatus push(const FramePtr& frame) noexcept;
     Result<void> learn_background();
 

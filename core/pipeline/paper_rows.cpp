@@ -289,6 +289,9 @@ void PaperDecoder::Impl::stamp_results() noexcept {
 }
 
 void PaperDecoder::Impl::decode(bool fresh) noexcept {
+    if (!fresh && from_phases && std::exchange(phases_are_stale, false)) {
+        (void)phases->decode_again();
+    }
     stamp_results();
     decode_phase();
     decoded = true;

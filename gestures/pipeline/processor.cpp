@@ -21,7 +21,13 @@ Mat4d facing_the_user() {
     return m;
 }
 
-Result<void> needs_order(const DecodeSettings& settings) {
+/// Of a DepthDecoder in a session.
+Result<void> check_pattern_settings(const DecodeSettings& settings) {
+    if (settings.mode != CaptureMode::sliding) {
+        return Error{ErrorCode::invalid_argument,
+                     "decode settings: mode is for fringes that are unwrapped in space, "
+                     "DecodeMethod::paper"};
+    }
     if (settings.order != OrderSource::automatic) {
         return Error{ErrorCode::invalid_argument,
                      "decode settings: order must be automatic, as a session needs depth and has "
@@ -47,7 +53,7 @@ Result<Processor> Processor::for_frames(const Rig& rig, const PatternSequence& p
         (options.method == DecodeMethod::automatic && !has_rig)) {
         return for_paper(rig, patterns, options);
     }
-    if (auto possible = needs_order(options.decode); !possible) {
+    if (auto possible = check_pattern_settings(options.decode); !possible) {
         return possible.error();
     }
     auto decoder = DepthDecoder::create(rig, patterns, rig.camera.size, options.decode);
@@ -133,7 +139,7 @@ Result<void> Processor::set_decode_settings(const DecodeSettings& settings) {
         return Error{ErrorCode::unsupported,
                      "decode settings: the source has no fringes, nothing is decoded"};
     }
-    if (auto possible = needs_order(settings); !possible) {
+    if (auto possible = check_pattern_settings(settings); !possible) {
         return possible;
     }
     return decoder_->set_settings(settings);
@@ -144,6 +150,10 @@ DecodeSettings Processor::decode_settings() const noexcept {
         return paper_->settings();
     }
     return decoder_ ? decoder_->settings() : DecodeSettings{};
+}
+
+bool Processor::uses(const DecodeField& field) const noexcept {
+    return paper_ ? paper_->uses(field) : decoder_.has_value() && DepthDecoder::uses(field);
 }
 
 bool Processor::decode(const FramePtr& frame, PipelineView& view) {

@@ -38,6 +38,7 @@ class Processor {
     [[nodiscard]] DecodeMethod method() const noexcept;
     Result<void> set_decode_settings(const DecodeSettings& settings);
     [[nodiscard]] DecodeSettings decode_settings() const noexcept;
+    [[nodiscard]] bool uses(const DecodeField& field) const noexcept;
     [[nodiscard]] bool metric() const noexcept { return !relative_; }
     [[nodiscard]] GestureRecogniser& recogniser() noexcept { return recogniser_; }
 

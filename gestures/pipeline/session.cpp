@@ -224,6 +224,8 @@ DecodeSettings Session::decode_settings() const noexcept {
     return impl_->processor.decode_settings();
 }
 
+bool Session::uses(const DecodeField& field) const noexcept { return impl_->processor.uses(field); }
+
 Result<void> Session::learn_background() {
     PaperDecoder* paper = impl_->processor.paper();
     return paper == nullptr ? no_paper_decoder() : paper->learn_background();

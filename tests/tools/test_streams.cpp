@@ -59,7 +59,7 @@ TEST(Run, SettingsChangeWhileItRuns) {
     const auto lines = folder.path() / "lines";
     std::string text =
         "mode=hold\nmode=default\n\nmin_modulation\ntaps=least_squares\nmin_support=2\n" +
-        std::string(300, 'x') + "\n";
+        std::string(600, 'x') + "\nmin_support=0.75\n";
     for (int n = 0; n < 200; ++n) {  // a few are read with each image
         text += "min_modulation=8\n";
     }
@@ -72,7 +72,9 @@ TEST(Run, SettingsChangeWhileItRuns) {
     EXPECT_THAT(outcome.err, HasSubstr("min_modulation: give NAME=VALUE"));
     EXPECT_THAT(outcome.err, HasSubstr("taps=least_squares: means nothing where"));
     EXPECT_THAT(outcome.err, HasSubstr("min_support is '2', must be a number from 0 to 1"));
-    EXPECT_THAT(outcome.err, HasSubstr("give NAME=VALUE"));
+    EXPECT_THAT(outcome.err, HasSubstr("a line of more than 256 characters is no setting"));
+    EXPECT_THAT(outcome.err, HasSubstr("min_support=0.75: from the next image on"));
+    EXPECT_THAT(outcome.err, Not(HasSubstr("xx")));
     EXPECT_THAT(outcome.err, HasSubstr("mode=hold: nothing was decoded yet"));
     EXPECT_THAT(outcome.err, HasSubstr("min_modulation=127: 0.0 % of the pixels have depth"));
     EXPECT_THAT(outcome.err,
@@ -89,6 +91,8 @@ TEST(Replay, ASettingThatWouldDoNothingIsRefused) {
     refused({"run", "--set", "min_support=0.4"}, "unwrapped in space");
     refused({"run", "--mode", "burst", "--set", "order_tolerance=0.4"}, "means nothing");
     refused({"run", "--mode", "burst", "--set", "mode=hold"}, "no images to hold yet");
+    refused({"run", "--mode", "burst", "--set", "threads=2"}, "means nothing");
+    refused({"run", "--set", "read_noise_levels=2"}, "means nothing");
     refused({"decode", kSwipe, "--out", "x", "--set", "mode=burst"}, "unwrapped in space");
 }
 

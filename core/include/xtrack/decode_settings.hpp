@@ -100,7 +100,13 @@ struct DecodeSettings {
 
 /// Whom a field of DecodeSettings means something to.
 /// @since 0.1
-enum class FieldUse { both, pattern /**< DepthDecoder */, paper /**< PaperDecoder */ };
+enum class FieldUse {
+    both,
+    pattern,  ///< DepthDecoder
+    paper,    ///< PaperDecoder
+    phases,   ///< DepthDecoder, and a PaperDecoder that takes its phases from one: of colours, of
+              ///< one grey image, of three steps whose motion is followed
+};
 
 /// One field of DecodeSettings, for whatever lists, shows or changes settings by name: command
 /// line, viewer, bindings.

@@ -93,18 +93,20 @@ class DepthDecoder {
     DecodeStatus push(const FramePtr& frame) noexcept;
 
     /// Decodes the images at hand once more, under the settings of now.
-    /// @return need_more where there was no decode yet
+    /// @return need_more where there was no decode yet, or an image came since that gave none
     DecodeStatus decode_again() noexcept;
 
-    /// Settings of the next decode. Images at hand and what was learnt of colours stay; a change of
-    /// `taps`, `order`, `motion`, `max_motion_px`, `keep_maps` or `threads` allocates, forgets how
-    /// things move, and leaves no depth in any pixel until the next decode.
+    /// Settings of the next decode; results stay those of the last one until then. Images at hand
+    /// stay, and what was learnt of colours; a change of `taps`, `order`, `motion`,
+    /// `max_motion_px`, `keep_maps` or `threads` allocates, and forgets how things move.
     /// @return as create(), and nothing changed
     Result<void> set_settings(const DecodeSettings& settings);
     [[nodiscard]] const DecodeSettings& settings() const noexcept;
+    /// Whether a setting means anything to a DepthDecoder.
+    [[nodiscard]] static bool uses(const DecodeField& field) noexcept;
 
     /// The newest depth image; no depth in any pixel before the first depth_ready. Valid until the
-    /// next push.
+    /// next decode.
     [[nodiscard]] const DepthFrame& depth() const noexcept;
 
     /// Gives OrderSource::depth_image its depth: pixels of the same camera, 0 = unknown there.
@@ -113,7 +115,7 @@ class DepthDecoder {
 
     /// Phase and modulation of the shortest period, set by the first depth_ready; empty without
     /// DecodeSettings::keep_maps, and the phase also for a Gray code without sines. Valid until the
-    /// next push, as are the two below.
+    /// next decode, as are the two below.
     [[nodiscard]] const PhaseMap& phase() const noexcept;
     /// Absolute coordinate along the coded axis, projector px (as shown, lens included), NaN where
     /// there is none; empty without keep_maps or without an order.

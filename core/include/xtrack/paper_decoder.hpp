@@ -55,7 +55,7 @@ class PaperDecoder {
  public:
     /// @param image width and height of the frames that will be pushed, px
     /// @param rig null, or without a projector: relative depth. Copied.
-    /// @errors unsupported: no period of three or more phases, or colour fringes;
+    /// @errors unsupported: no sines, or linear ramps;
     ///         invalid_argument: settings out of range, an image that is_image_size() does not hold
     ///         for, singular geometry, a projector or camera size that disagrees; io: no memory
     /// @thread any
@@ -75,9 +75,11 @@ class PaperDecoder {
 
     /// Settings of the next decode; a change of `mode` begins with the next frame. On hold the
     /// images at hand are decoded again at once.
-    /// @errors invalid_argument, and nothing changed
+    /// @errors invalid_argument; io: no memory; nothing changed
     Result<void> set_settings(const DecodeSettings& settings);
     [[nodiscard]] const DecodeSettings& settings() const noexcept;
+    /// Whether a setting means anything to this decoder, with its patterns and as it is set.
+    [[nodiscard]] bool uses(const DecodeField& field) const noexcept;
 
     /// Takes the last decode for the empty scene: relative depth is then before it, until this is
     /// called again. Takes tens of milliseconds; allocates.

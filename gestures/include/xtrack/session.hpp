@@ -88,9 +88,10 @@ struct TimeStatistics {
 /// Counts and wall-clock times since the session was made.
 /// @since 0.1
 struct SessionStatistics {
-    std::uint64_t items = 0;     ///< frames, depth images or hand frames processed
-    std::uint64_t dropped = 0;   ///< arrived faster than they could be processed (never in replay)
-    std::uint64_t rejected = 0;  ///< of these: damaged, of an unknown pattern, or of another size
+    std::uint64_t items = 0;    ///< frames, depth images or hand frames processed
+    std::uint64_t dropped = 0;  ///< arrived faster than they could be processed (never in replay)
+    std::uint64_t rejected =
+        0;  ///< of these: damaged, of an unknown pattern or another size, on hold
     std::uint64_t depth_frames = 0;
     std::uint64_t events = 0;
     std::uint64_t events_dropped = 0;  ///< lost by a reader that polled too slowly; 0 without one
@@ -188,16 +189,18 @@ class Session {
     /// @thread any
     [[nodiscard]] DecodeMethod method() const noexcept;
 
-    /// Settings of the decoder from the next frame on; on hold (DecodeSettings::mode) the images at
-    /// hand are decoded again at once. @thread that of run() or step(), a callback included; what a
-    /// PipelineView points to is then of the new settings
+    /// Settings of the decoder from the next frame on; on hold (DecodeSettings::mode, of `paper`
+    /// alone) the images at hand are decoded again at once.
+    /// @thread that of run() or step(); after start() a callback alone
     /// @errors unsupported: the session has no fringes; invalid_argument; io: no memory; nothing
     ///         changed
     Result<void> set_decode_settings(const DecodeSettings& settings);
     /// Those of now; the defaults where there are no fringes. @thread as set_decode_settings()
     [[nodiscard]] DecodeSettings decode_settings() const noexcept;
+    /// Whether a setting means anything to the decoder at hand. @thread as set_decode_settings()
+    [[nodiscard]] bool uses(const DecodeField& field) const noexcept;
     /// Takes the last decode for the empty scene (PaperDecoder::learn_background()).
-    /// @thread that of run() or step()
+    /// @thread that of run() or step(); after start() a callback alone
     /// @errors unsupported: the session has no PaperDecoder, or nothing was decoded yet; io
     Result<void> learn_background();
 

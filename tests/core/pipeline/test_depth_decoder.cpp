@@ -279,8 +279,10 @@ TEST_P(EverySequence, SettingsChangeWhileItRuns) {
     settings.keep_maps = true;
     settings.motion = MotionHandling::off;
     settings.threads = 2;
+    const DepthFrame& given = decoder.depth();
     ASSERT_TRUE(decoder.set_settings(settings));
-    EXPECT_EQ(score(decoder.depth(), kWall).none, 1.0);
+    EXPECT_EQ(score(decoder.depth(), kWall).none, 1.0) << "that of the last decode";
+    EXPECT_EQ(&given, &decoder.depth());
     EXPECT_EQ(decoder.decode_again().state, DecodeState::depth_ready);
     EXPECT_EQ(score(decoder.depth(), kWall).good, before);
     EXPECT_EQ(decoder.sigma_mm().width(), plane_rig().camera.size.width);

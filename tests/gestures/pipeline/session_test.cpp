@@ -83,6 +83,48 @@ TEST(Session, TheDecodersSettingsChangeWhileItRuns) {
     EXPECT_EQ(refused.error().code, ErrorCode::unsupported);
 }
 
+// What a callback was given stays there while another changes what the decoder is made of.
+TEST(Session, ADecoderMadeAnewLeavesTheViewAlone) {
+    auto session = Session::open("sim");
+    ASSERT_TRUE(session) << session.error().message;
+    int depths = 0;
+    std::size_t before = 0;
+    const auto known_in = [](const DepthFrame& depth) {
+        std::size_t known = 0;
+        for (int y = 0; y < depth.depth.height(); ++y) {
+            for (int x = 0; x < depth.depth.width(); ++x) {
+                known += depth.depth.at(x, y) != 0 ? 1U : 0U;
+            }
+        }
+        return known;
+    };
+    session->subscribe_pipeline([&](const PipelineView& view) {
+        if (view.depth == nullptr || ++depths != 3) {
+            return;
+        }
+        before = known_in(*view.depth);
+        for (const int threads : {2, 1, 3}) {
+            DecodeSettings settings = session->decode_settings();
+            settings.threads = threads;
+            EXPECT_TRUE(session->set_decode_settings(settings));
+        }
+        EXPECT_EQ(known_in(*view.depth), before);
+        EXPECT_EQ(known_in(view.decoder->depth()), before);
+    });
+    session->subscribe_pipeline([&](const PipelineView& view) {
+        if (depths == 3 && view.depth != nullptr) {
+            EXPECT_EQ(known_in(*view.depth), before);
+        }
+    });
+    while (depths < 5) {
+        ASSERT_TRUE(session->step());
+    }
+    EXPECT_GT(before, 10000U);
+    DecodeSettings settings;
+    settings.mode = CaptureMode::hold;
+    EXPECT_FALSE(session->set_decode_settings(settings)) << "of the PaperDecoder alone";
+}
+
 TEST(Session, TwoReplaysGiveTheSameEvents) {
     std::string runs[2];
     for (std::string& text : runs) {
