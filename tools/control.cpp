@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -43,6 +44,15 @@ std::optional<std::string> read_some() {
 #endif
 }
 
+bool is_long(const std::string& line) {
+    if (line.size() <= kMostLine) {
+        return false;
+    }
+    print_error(
+        fmt::format("xtrack: a line of more than {} characters is no setting\n", kMostLine));
+    return true;
+}
+
 double percent_with_depth(const DepthFrame& depth) {
     std::size_t known = 0;
     for (int y = 0; y < depth.depth.height(); ++y) {
@@ -56,51 +66,63 @@ double percent_with_depth(const DepthFrame& depth) {
 
 }  // namespace
 
+Control::Control() {
+#ifndef _WIN32
+    // In the background of a shell, reading would stop the program: then there is nothing to read.
+    std::signal(SIGTTIN, SIG_IGN);
+#endif
+}
+
 void Control::poll(Session& session, const PipelineView& view) {
     paper_ = view.paper != nullptr ? view.paper : paper_;
     if (!open_) {
         return;
     }
-    const std::optional<std::string> some = read_some();
-    open_ = some.has_value();
-    pending_ += some.value_or("\n");
-    for (std::size_t end = 0; (end = pending_.find('\n')) != std::string::npos;) {
-        if (!std::exchange(skipping_, false)) {
-            take(pending_.substr(0, end), session);
-        }
-        pending_.erase(0, end + 1);
+    if (pending_.find('\n') == std::string::npos) {
+        const std::optional<std::string> some = read_some();
+        open_ = some.has_value();
+        pending_ += some.value_or("\n");
     }
-    if (skipping_) {
-        pending_.clear();
-    } else if (pending_.size() > kMostLine) {
+    // One line an image: a change may make the decoder anew, and images must not wait for a flood.
+    const std::size_t end = pending_.find('\n');
+    if (end != std::string::npos) {
+        const std::string line = pending_.substr(0, end);
+        pending_.erase(0, end + 1);
+        if (!std::exchange(skipping_, false) && !is_long(line)) {
+            take(line, session);
+        }
+    } else if (skipping_ || is_long(pending_)) {
         skipping_ = true;
-        print_error(
-            fmt::format("xtrack: a line of more than {} characters is no setting\n", kMostLine));
         pending_.clear();
     }
 }
 
-void Control::take(const std::string& line, Session& session) const {
+void Control::take(std::string line, Session& session) const {
+    if (!line.empty() && line.back() == '\r') {
+        line.pop_back();
+    }
     if (line.empty()) {
         return;
     }
-    DecodeSettings settings = session.decode_settings();
+    const DecodeSettings before = session.decode_settings();
+    DecodeSettings settings = before;
     auto done = apply_settings({line}, settings);
     if (done) {
         done = check_settings({line}, session.method(),
                               [&](const DecodeField& field) { return session.uses(field); });
     }
-    if (done) {
+    if (done && settings.mode == CaptureMode::hold && paper_ == nullptr) {
+        done = Error{ErrorCode::invalid_argument,
+                     line + ": nothing was decoded yet that could be held"};
+    }
+    if (done && settings != before) {
         done = session.set_decode_settings(settings);
     }
     if (!done) {
         print_error(fmt::format("xtrack: {}\n", done.error().message));
     } else if (settings.mode == CaptureMode::hold) {
-        print_error(fmt::format("{}: {}\n", line,
-                                paper_ == nullptr
-                                    ? "nothing was decoded yet that could be held"
-                                    : fmt::format("{:.1f} % of the pixels have depth",
-                                                  percent_with_depth(paper_->depth()))));
+        print_error(fmt::format("{}: {:.1f} % of the pixels have depth\n", line,
+                                percent_with_depth(paper_->depth())));
     } else {
         print_error(fmt::format("{}: from the next image on\n", line));
     }

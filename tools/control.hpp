@@ -13,11 +13,12 @@ namespace xtrack::tools {
 /// @thread that of the session
 class Control {
  public:
+    Control();
     /// Takes what has come; never waits. Lines that are no setting are named and passed over.
     void poll(Session& session, const PipelineView& view);
 
  private:
-    void take(const std::string& line, Session& session) const;
+    void take(std::string line, Session& session) const;
 
     const PaperDecoder* paper_ = nullptr;  // on hold no view has it
     std::string pending_;                  // a line whose end has not come

@@ -207,8 +207,12 @@ class DecodeRun {
         } else if (patterns_.response) {
             method += "; the measured response of pattern.yaml";
         }
-        return options_.json ? json_of(method, chosen_.note, reports_)
-                             : table_of(method, chosen_.note, reports_);
+        std::string note = chosen_.note;
+        if (!chosen_.makes_depth && std::any_of(reports_.begin(), reports_.end(),
+                                                [](const auto& r) { return !r.relative; })) {
+            note += "; where no surface is large enough for heights there are no points either";
+        }
+        return options_.json ? json_of(method, note, reports_) : table_of(method, note, reports_);
     }
 
  private:
@@ -442,14 +446,17 @@ void add_decode(CLI::App& app, int& exit_status) {
         "--all", options->all,
         "Every depth image, each in a folder named as its frame (numbered where the names "
         "do not tell frames apart)");
-    command->add_option("--order-from", options->order_from,
-                        "Fringe order from a 16-bit depth image of 0.1 mm a step, or a folder of "
-                        "them named as the frames; such as truth/depth, also inside REC");
+    command
+        ->add_option("--order-from", options->order_from,
+                     "Fringe order from a 16-bit depth image of 0.1 mm a step, or a folder of "
+                     "them named as the frames; such as truth/depth, also inside REC")
+        ->check(not_empty());
     command
         ->add_option("--min-modulation", options->min_modulation,
                      "Fringe amplitude below which a pixel is masked, grey levels")
-        ->capture_default_str();
-    add_settings_option(*command, options->changes);
+        ->capture_default_str()
+        ->check(not_empty());
+    add_settings_option(*command, options->changes, DepthDecoder::uses);
     command->add_option(
         "--gamma", options->gamma,
         "The projector's response, light = value^gamma: a number, or auto to find it "

@@ -53,13 +53,14 @@ Result<std::string> with_legend(const Levels& levels, int map, double top, doubl
     const auto px = [scale](double v) { return static_cast<int>(std::lround(v * scale)); };
     const int height = levels.value.rows;
     const int width = levels.value.cols;
-    cv::Mat picture(height + px(28), width + px(140), CV_8UC3, cv::Scalar(28, 28, 28));
+    const int shown = std::max(height, px(60));  // the scale needs room
+    cv::Mat picture(shown + px(28), width + px(140), CV_8UC3, cv::Scalar(28, 28, 28));
 
     cv::Mat image = picture(cv::Rect(0, px(28), width, height));
     image.setTo(cv::Scalar(0, 0, 0));
     in_colour(levels.value, map).copyTo(image, levels.known);
 
-    const cv::Rect bar(width + px(14), px(28) + height / 12, px(20), height * 10 / 12);
+    const cv::Rect bar(width + px(14), px(28) + shown / 12, px(20), shown * 10 / 12);
     cv::Mat ramp(bar.height, bar.width, CV_8UC1);
     for (int y = 0; y < bar.height; ++y) {
         // Level 255 is on top, whichever end of the scale that is.

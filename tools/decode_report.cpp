@@ -111,7 +111,9 @@ Result<std::optional<TruthReport>> measure_truth(const RecordingReader& recordin
     const HandAccuracy hand = measure_hand(depth, truth.depth.view(), mask.view(), kOffBy_mm);
     TruthReport report;
     report.pixels = hand.pixels;
-    report.rms_mm = hand.rms_mm();
+    if (hand.close > 0) {
+        report.rms_mm = hand.rms_mm();
+    }
     report.off_percent = hand.off_percent();
     report.missing_percent = hand.missing_percent();
     return std::optional(report);
@@ -131,9 +133,11 @@ std::string table_of(const std::string& method, const std::string& note,
                     ? fmt::format("{:>10.1f}{:>10.1f}{:>10.1f}", r.median_mm, r.low_mm, r.high_mm)
                     : fmt::format("{:>10}{:>10}{:>10}", "-", "-", "-");
         text += fmt::format("{:>9.1f}", r.valid_percent);
-        text += r.truth ? fmt::format("{:>10.2f}{:>8.2f}{:>10.2f}", r.truth->rms_mm,
-                                      r.truth->off_percent, r.truth->missing_percent)
-                        : fmt::format("{:>10}{:>8}{:>10}", "-", "-", "-");
+        text += r.truth && r.truth->rms_mm ? fmt::format("{:>10.2f}", *r.truth->rms_mm)
+                                           : fmt::format("{:>10}", "-");
+        text += r.truth ? fmt::format("{:>8.2f}{:>10.2f}", r.truth->off_percent,
+                                      r.truth->missing_percent)
+                        : fmt::format("{:>8}{:>10}", "-", "-");
         text += '\n';
         if (r.ripple && cause_of(*r.ripple) != RippleCause::none) {
             text += fmt::format(
@@ -164,7 +168,8 @@ std::string json_of(const std::string& method, const std::string& note,
         }
         if (r.truth) {
             frame["hand"] = {{"pixels", r.truth->pixels},
-                             {"rms_mm", r.truth->rms_mm},
+                             {"rms_mm", r.truth->rms_mm ? nlohmann::ordered_json(*r.truth->rms_mm)
+                                                        : nlohmann::ordered_json()},
                              {"off_percent", r.truth->off_percent},
                              {"missing_percent", r.truth->missing_percent}};
         }

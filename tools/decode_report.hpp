@@ -15,9 +15,9 @@ namespace xtrack::tools {
 
 /// Depth beside ground truth, on the hand (mask 1) without its outermost pixels.
 struct TruthReport {
-    std::size_t pixels = 0;    ///< of the hand, with true depth
-    double rms_mm = 0.0;       ///< of those within kOffBy_mm
-    double off_percent = 0.0;  ///< share that is off by more
+    std::size_t pixels = 0;        ///< of the hand, with true depth
+    std::optional<double> rms_mm;  ///< of those within kOffBy_mm, if any are
+    double off_percent = 0.0;      ///< share that is off by more
     double missing_percent = 0.0;
 };
 

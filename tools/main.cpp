@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <string>
 
 #include <fmt/format.h>
@@ -56,6 +57,10 @@ int main(int argc, char** argv) {
                                         "reads it gone?"});
         }
         return status;
+    } catch (const std::bad_alloc&) {
+        return xtrack::tools::fail({xtrack::ErrorCode::io,
+                                    "not enough memory; close other programs, or use smaller "
+                                    "images"});
     } catch (const std::exception& error) {
         return xtrack::tools::fail({xtrack::ErrorCode::io, error.what()});
     }

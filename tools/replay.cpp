@@ -32,7 +32,7 @@ void add_replay(CLI::App& app, int& exit_status) {
         }
         auto session = Session::open(*folder, options);
         if (!session) {
-            exit_status = fail(session.error());
+            exit_status = fail(with_mode(session.error()));
             return;
         }
         if (const auto possible = check_stream(*session, *stream); !possible) {

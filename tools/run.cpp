@@ -53,10 +53,10 @@ Result<Session> open(const RunOptions& run, SessionOptions options) {
             return shown.error();
         }
         if (!shown->colours.empty()) {
-            fmt::print(stderr, "colour self-test: {}\n", shown->colours);
+            print_error(fmt::format("colour self-test: {}\n", shown->colours));
         }
-        fmt::print(stderr, "method {}: {}\n", info(shown->verdict.method).name,
-                   shown->verdict.reason);
+        print_error(fmt::format("method {}: {}\n", info(shown->verdict.method).name,
+                                shown->verdict.reason));
     }
     auto rig = SimulatedRig::create(*settings);
     if (!rig) {
@@ -79,7 +79,7 @@ void add_run(CLI::App& app, int& exit_status) {
         ->check(CLI::Validator(
             [](const std::string& text) {
                 return text.find_first_not_of("0123456789") != std::string::npos ||
-                               text.find_first_not_of("0") == std::string::npos
+                               text.find_first_not_of("0") == std::string::npos || text.size() > 19
                            ? std::string("must be a whole number from 1 on")
                            : std::string();
             },
@@ -116,7 +116,7 @@ void add_run(CLI::App& app, int& exit_status) {
         } else {
             exit_status = session.error().code == ErrorCode::invalid_argument
                               ? usage(session.error())
-                              : fail(session.error());
+                              : fail(with_mode(session.error()));
         }
     });
 }

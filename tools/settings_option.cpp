@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "core/base/text.hpp"
+
 namespace xtrack::tools {
 
 namespace {
@@ -21,8 +23,9 @@ bool is_offered(const DecodeField& field) {
 
 std::string range_of(const DecodeField& field) {
     if (field.choices.empty()) {
-        return fmt::format("{:g} to {:g}{}{}", field.least, field.most,
-                           *field.unit == '\0' ? "" : " ", field.unit);
+        return fmt::format("{} to {}{}{}", base::number_text(field.least),
+                           base::number_text(field.most), *field.unit == '\0' ? "" : " ",
+                           field.unit);
     }
     std::string names;
     for (const char* name : field.choices) {
@@ -31,10 +34,10 @@ std::string range_of(const DecodeField& field) {
     return names;
 }
 
-std::string all_settings() {
+std::string all_settings(const std::function<bool(const DecodeField&)>& uses) {
     std::string text = "Changes a setting of the decoder:";
     for (const DecodeField& field : decode_fields()) {
-        if (!is_offered(field)) {
+        if (!is_offered(field) || !uses(field)) {
             continue;
         }
         text += fmt::format("\n{}: {}{} ({}; else {})", field.name,
@@ -46,8 +49,9 @@ std::string all_settings() {
 
 }  // namespace
 
-void add_settings_option(CLI::App& command, std::vector<std::string>& changes) {
-    command.add_option("--set", changes, all_settings())
+void add_settings_option(CLI::App& command, std::vector<std::string>& changes,
+                         const std::function<bool(const DecodeField&)>& uses) {
+    command.add_option("--set", changes, all_settings(uses))
         ->type_name("NAME=VALUE")
         ->allow_extra_args(false);
 }
@@ -57,7 +61,7 @@ Result<void> apply_settings(const std::vector<std::string>& changes, DecodeSetti
         const std::size_t equals = change.find('=');
         if (equals == std::string::npos) {
             return Error{ErrorCode::invalid_argument,
-                         change + ": give NAME=VALUE, such as min_modulation=8"};
+                         base::quoted(change) + ": give NAME=VALUE, such as min_modulation=8"};
         }
         if (auto set = set_field(settings, std::string_view(change).substr(0, equals),
                                  std::string_view(change).substr(equals + 1));
@@ -71,7 +75,7 @@ Result<void> apply_settings(const std::vector<std::string>& changes, DecodeSetti
 Result<void> check_settings(const std::vector<std::string>& changes, DecodeMethod method,
                             const std::function<bool(const DecodeField&)>& uses) {
     const auto refuse = [](const std::string& change, const char* why) {
-        return Error{ErrorCode::invalid_argument, change + ": " + why};
+        return Error{ErrorCode::invalid_argument, base::quoted(change) + ": " + why};
     };
     for (const std::string& change : changes) {
         const std::string name = change.substr(0, change.find('='));
@@ -92,7 +96,8 @@ Result<void> check_settings(const std::vector<std::string>& changes, DecodeMetho
             }
             return refuse(change, method == DecodeMethod::paper
                                       ? "means nothing where fringes are unwrapped in space, as "
-                                        "without a rig or with --mode"
+                                        "without a rig, with --mode, or of one pattern that never "
+                                        "changes"
                                       : "is for fringes that are unwrapped in space, which run and "
                                         "replay do with --mode default");
         }

@@ -13,7 +13,9 @@ namespace xtrack::tools {
 
 /// `--set NAME=VALUE`, as often as needed; its help lists every setting with unit, range and
 /// standard value.
-void add_settings_option(CLI::App& command, std::vector<std::string>& changes);
+/// @param uses which of them the command may look at
+void add_settings_option(CLI::App& command, std::vector<std::string>& changes,
+                         const std::function<bool(const DecodeField&)>& uses);
 
 /// @errors invalid_argument: what is no NAME=VALUE, a name that is none, a value out of range
 [[nodiscard]] Result<void> apply_settings(const std::vector<std::string>& changes,

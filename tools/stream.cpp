@@ -82,7 +82,7 @@ void add_stream_options(CLI::App& command, StreamOptions& options) {
             "joints: the user's, as events are): jsonl or none")
         ->check(CLI::IsMember({"jsonl", "none"}))
         ->default_str("none");
-    add_settings_option(command, options.changes);
+    add_settings_option(command, options.changes, [](const DecodeField&) { return true; });
     command.add_flag("--stats", options.statistics,
                      "At the end, print the time of every stage on stderr");
     command
@@ -196,9 +196,10 @@ int play(Session& session, const StreamOptions& options, Pace pace, bool whole, 
             "xtrack: without a rig.yaml depth is relative; lengths are in eightieths of a palm's "
             "width, not in mm, and pinches are not looked for\n");
     }
-    Control control;
+    std::optional<Control> control;
     if (options.control) {
-        session.subscribe_pipeline([&](const PipelineView& view) { control.poll(session, view); });
+        control.emplace();
+        session.subscribe_pipeline([&](const PipelineView& view) { control->poll(session, view); });
     }
     // A bar between lines of events on the same screen would help nobody.
     std::optional<Progress> progress;
@@ -222,6 +223,13 @@ int play(Session& session, const StreamOptions& options, Pace pace, bool whole, 
         return kInterruptedStatus;
     }
     return 0;
+}
+
+Error with_mode(Error error) {
+    if (error.message.ends_with("unwrap in space")) {
+        error.message += " with --mode default";
+    }
+    return error;
 }
 
 void print_error(const std::string& text) { (void)std::fputs(text.c_str(), stderr); }

@@ -49,6 +49,9 @@ void choose_decoding(const StreamOptions& stream, SessionOptions& options);
 int play(Session& session, const StreamOptions& options, Pace pace, bool whole,
          std::size_t items = 0);
 
+/// Where the mend is to unwrap in space: how that is said to run and replay.
+[[nodiscard]] Error with_mode(Error error);
+
 /// Where stderr is closed or full nothing can be said any more, and the exit status must do.
 void print_error(const std::string& text);
 

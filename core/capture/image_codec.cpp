@@ -49,13 +49,20 @@ Result<void> decode(std::string_view bytes, const std::string& name, const Rows&
                                            "row"};
 }
 
+constexpr std::size_t kMostHeader = 1U << 16U;
+
 Result<std::string> encode(const char* extension, const cv::Mat& image,
                            const std::vector<int>& parameters) {
     try {
         std::vector<unsigned char> bytes;
+        // All that it can need: where memory ran out within libtiff, nobody could catch that.
+        bytes.reserve(2 * image.total() * image.elemSize() + kMostHeader);
         if (cv::imencode(extension, image, bytes, parameters)) {
             return std::string(bytes.begin(), bytes.end());
         }
+    } catch (const std::bad_alloc&) {
+        return Error{ErrorCode::io, std::string("not enough memory to encode an image as ") +
+                                        extension + "; close other programs"};
     } catch (const std::exception&) {
         // Falls through to the same message.
     }

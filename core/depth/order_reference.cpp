@@ -19,8 +19,7 @@ Error repeats(double period_px, const std::string& why) {
     return Error{ErrorCode::unsupported, "pattern sequence: its longest period of " + px +
                                              " px repeats " + why +
                                              "; add a longer period or a Gray code, give the order "
-                                             "from a depth image, or have it unwrapped in space "
-                                             "(--mode default)"};
+                                             "from a depth image, or unwrap in space"};
 }
 
 }  // namespace

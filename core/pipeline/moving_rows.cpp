@@ -12,6 +12,7 @@ namespace xtrack {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+constexpr float kTurn_rad = 2.0F * std::numbers::pi_v<float>;
 // Differences of one pixel below this are camera noise and compression, grey levels.
 constexpr float kPixelNoise = 8.0F;
 
@@ -155,7 +156,8 @@ void DepthDecoder::Impl::add_cell_drift(int cx, int cy, int begin, int end, bool
     const auto px_per_rad =
         static_cast<float>(plan.sines.back().period_px / (2.0 * std::numbers::pi));
     for (int x = begin; x < end; ++x) {
-        out.phase[x] -= drift_rad;  // NaN stays what it is
+        // NaN stays what it is; a phase is within half a turn wherever it is handed on.
+        out.phase[x] = std::remainder(out.phase[x] - drift_rad, kTurn_rad);
         if (geometry) {
             out.coordinate[x] -= drift_rad * px_per_rad;
         }

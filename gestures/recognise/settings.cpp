@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 namespace xtrack {
@@ -107,6 +108,13 @@ GestureDemands demands_of(const GestureSettings& settings) noexcept {
         // It begins at rest, and is an aperture of so many mm.
         demands.hand_mmps = std::max(demands.hand_mmps, settings.pinch_palm_mmps);
         demands.metric = true;
+    }
+    if (settings.wave) {
+        // The fastest of a stroke that is a sine, as slow as strokes may follow each other.
+        constexpr double kFastest = std::numbers::pi / 2.0;
+        demands.hand_mmps =
+            std::max(demands.hand_mmps, kFastest * settings.wave_stroke_mm * settings.wave_turns /
+                                            (1e-3 * settings.wave_within_ms));
     }
     demands.hand_mmps *= kShareOfSpeed;
     return demands;

@@ -437,5 +437,29 @@ INSTANTIATE_TEST_SUITE_P(Rendered, MovingHands,
                                          Moving{"rendered/swipe-left-dual-60", 12, 45, 0.10,
                                                 0.30}));
 
+// Corrections for a hand that comes nearer, too: unwrapping takes what is beyond for no phase.
+TEST(PhasesOfWhatMoves, StayWithinHalfATurn) {
+    LOAD_OR_SKIP("rendered/push-three-60", recording);
+    DecodeSettings settings;
+    settings.order = OrderSource::none;
+    settings.keep_maps = true;
+    auto made = DepthDecoder::create(recording.rig, recording.patterns, recording.size(), settings);
+    ASSERT_TRUE(made) << made.error().message;
+    float most = 0.0F;
+    for (const FramePtr& frame : recording.frames) {
+        if (made->push(frame).state != DecodeState::depth_ready) {
+            continue;
+        }
+        const Image<float>& phase = made->phase().phase_rad;
+        for (int y = 0; y < phase.height(); ++y) {
+            for (int x = 0; x < phase.width(); ++x) {
+                most = std::max(most, std::fabs(phase.at(x, y)));  // NaN is passed over
+            }
+        }
+    }
+    EXPECT_LE(most, 3.141593F);
+    EXPECT_GT(most, 3.14F);
+}
+
 }  // namespace
 }  // namespace xtrack
