@@ -21,6 +21,7 @@
 #include "core/capture/image_codec.hpp"
 #include "core/capture/in_recording.hpp"
 #include "tools/commands.hpp"
+#include "tools/decode_choice.hpp"
 #include "tools/decode_exports.hpp"
 #include "tools/decode_gamma.hpp"
 #include "tools/decode_pictures.hpp"
@@ -40,18 +41,6 @@ namespace fs = std::filesystem;
 // Projectors have 1.8 to 2.4, and 1 where that is corrected: less was corrected twice.
 constexpr double kUsualGamma = 0.9;
 
-struct DecodeOptions {
-    std::string recording;
-    std::string out;
-    bool all = false;
-    std::string order_from;
-    std::optional<std::string> gamma;
-    std::set<Export> exports{Export::ply};
-    bool json = false;
-    double min_modulation = DecodeSettings{}.min_modulation;
-    std::vector<std::string> changes;  // of settings
-};
-
 // Of one of the three names that the option takes.
 Export export_of(const std::string& name) {
     if (name == "pcd") {
@@ -70,14 +59,6 @@ Result<base::NewFolder> make_output(const fs::path& wanted) {
     return base::NewFolder::create(out);
 }
 
-// A decoder, how its order is found, and what the user should know about that.
-struct Chosen {
-    DepthDecoder decoder;
-    bool makes_depth = true;
-    std::string order;
-    std::string note;
-};
-
 int steps_of(const std::vector<double>& phases) { return static_cast<int>(phases.size()); }
 
 // Folders of frames are named as their files where these names tell them apart and name a folder:
@@ -91,53 +72,10 @@ bool stems_name_folders(const RecordingReader& recording) {
            });
 }
 
-Result<Chosen> choose_decoder(const RecordingReader& recording, const PatternSequence& patterns,
-                              const DecodeOptions& options) {
-    DecodeSettings settings;
-    settings.min_modulation = options.min_modulation;
-    // One set of patterns is all there is to the first depth; a stream has more to average over.
-    settings.taps = options.all ? PhaseTaps::automatic : PhaseTaps::least_squares;
-    settings.motion = options.all ? MotionHandling::follow : MotionHandling::off;
-    if (const auto set = apply_settings(options.changes, settings); !set) {
-        return set.error();
-    }
-    settings.keep_maps = true;  // what the files are written from
-    const auto create = [&](OrderSource order) {
-        settings.order = order;
-        return DepthDecoder::create(recording.rig(), patterns, recording.image_size(), settings);
-    };
-    Error refusal{
-        ErrorCode::unsupported,
-        "no rig.yaml: no millimetres, heights have no scale, and what stands out most is taken to "
-        "be nearer; add the calibration"};
-    if (recording.has_rig()) {
-        const OrderSource wanted =
-            options.order_from.empty() ? OrderSource::automatic : OrderSource::depth_image;
-        auto decoder = create(wanted);
-        if (decoder) {
-            return Chosen{
-                std::move(*decoder),
-                true,
-                options.order_from.empty() ? "order from the patterns" : "order from a depth image",
-                {}};
-        }
-        refusal = decoder.error();
-        if (refusal.code != ErrorCode::unsupported || !options.order_from.empty()) {
-            return capture::in_recording(recording.folder(), refusal);
-        }
-    }
-    auto decoder = create(OrderSource::none);
-    if (!decoder) {
-        return capture::in_recording(recording.folder(),
-                                     recording.has_rig() ? refusal : decoder.error());
-    }
-    return Chosen{std::move(*decoder), false, "phase alone", refusal.message};
-}
-
 class DecodeRun {
  public:
     DecodeRun(const DecodeOptions& options, RecordingReader recording, PatternSequence patterns,
-              Chosen chosen, OrderDepth order)
+              ChosenDecoder chosen, OrderDepth order)
         : options_(options),
           recording_(std::move(recording)),
           patterns_(std::move(patterns)),
@@ -393,7 +331,7 @@ class DecodeRun {
     DecodeOptions options_;
     RecordingReader recording_;
     PatternSequence patterns_;  // with the gamma that is corrected
-    Chosen chosen_;
+    ChosenDecoder chosen_;
     OrderDepth order_;
     bool numbered_;  // folders of frames are named by number: their files' names do not tell them
     std::optional<base::NewFolder> output_;
