@@ -17,7 +17,7 @@ constexpr double kLeastDeterminant = 1e-3;
 constexpr float kOtherContrast = 0.15F;
 // Only the second harmonic tells tint from gain, and rooms are dark beside the projector: that
 // there is no tint is believed for this share of the pixels.
-constexpr float kTintShare = 1.0F;
+constexpr float kTintShare = 1.5F;
 // That no colour is washed out more than another is believed for this share of the pixels.
 constexpr float kTransferShare = 0.1F;
 constexpr float kLeastContrast = 0.1F;

@@ -27,7 +27,7 @@ constexpr std::array<MethodInfo, 12> kMethods{{
     {Method::rgb, "rgb", "two colour patterns in turn, a coarse one orders a fine one", true, true,
      true, 2, 12.5},
     {Method::rgb_static, "rgb-static", "one colour pattern that never changes", true, false, true,
-     1, 12.5},
+     1, 33.0},
     {Method::dual, "dual", "three steps of a coarse and of a fine period", false, true, true, 6,
      0.0},
     {Method::triple, "triple", "three steps of three periods", false, true, true, 9, 0.0},

@@ -78,7 +78,7 @@ TEST(Auto, TakesColourThatNeverChangesForAHandOnAWebcam) {
     ASSERT_TRUE(chosen) << chosen.error().message;
     EXPECT_EQ(chosen->method, Method::rgb_static);
     EXPECT_THAT(chosen->reason, HasSubstr("m/s"));
-    EXPECT_NEAR(chosen->hand_mmps, 375.0, 1.0) << "12.5 mm an image, 30 images a second";
+    EXPECT_NEAR(chosen->hand_mmps, 990.0, 1.0) << "33 mm an image, 30 images a second";
 }
 
 TEST(Auto, PrefersPatternsThatNeverChange) {
