@@ -16,8 +16,8 @@ constexpr double kLeastDeterminant = 1e-3;
 // Contrasts that differ by this much from what is usual count half: another surface.
 constexpr float kOtherContrast = 0.15F;
 // Only the second harmonic tells tint from gain, and rooms are dark beside the projector: that
-// there is no tint is believed for this share of the pixels.
-constexpr float kTintShare = 1.5F;
+// there is no tint is believed for so many times the pixels.
+constexpr float kTintShare = 3.0F;
 // That no colour is washed out more than another is believed for this share of the pixels.
 constexpr float kTransferShare = 0.1F;
 constexpr float kLeastContrast = 0.1F;
