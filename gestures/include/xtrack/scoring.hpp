@@ -125,7 +125,7 @@ class GestureScorer {
  private:
     [[nodiscard]] bool scored(std::string_view name) const;
 
-    std::vector<std::string> scored_;
+    GestureSettings settings_;
     std::map<std::string, GestureScore> gestures_;
     int unlabelled_events_ = 0;
     double unlabelled_hours_ = 0.0;
