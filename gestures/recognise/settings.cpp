@@ -126,6 +126,7 @@ constexpr std::array kFields{
     number<&S::push_stable_mmps>("push_stable_mmps", 20.0, 500.0),
     number<&S::push_stable_ms>("push_stable_ms", 0.0, 2000.0),
     number<&S::push_facing>("push_facing", 0.0, 1.0),
+    number<&S::pull_length_mm>("pull_length_mm", 40.0, 600.0),
     number<&S::pinch_close_mm>("pinch_close_mm", 5.0, 40.0),
     number<&S::pinch_close_share>("pinch_close_share", 0.0, 0.3),
     number<&S::pinch_release_mm>("pinch_release_mm", 10.0, 80.0),
@@ -227,7 +228,7 @@ GestureDemands demands_of(const GestureSettings& settings) noexcept {
     if (settings.swipe) {
         demands.hand_mmps = std::max(demands.hand_mmps, settings.swipe_speed_mmps);
     }
-    if (settings.push) {
+    if (settings.push || settings.pull) {
         demands.hand_mmps = std::max(demands.hand_mmps, settings.push_speed_mmps);
     }
     if (settings.pinch) {

@@ -133,7 +133,7 @@ struct GestureSettings {
     /// The index tip's share of the palm's way, as second vote. 0..1.
     double swipe_tip_share = 0.5;
 
-    // --- push ------------------------------------------------------------------------------------
+    // --- push, pull ------------------------------------------------------------------------------
     /// Mean speed over the window. 100..3000; 100..600. NiTE1 has 330; hands that reach out to
     /// begin something else come to 350.
     double push_speed_mmps = 370.0;
@@ -148,6 +148,9 @@ struct GestureSettings {
     double push_stable_ms = 360.0;
     /// As swipe_facing, for the palm toward the screen. 0..1.
     double push_facing = 0.5;
+    /// A pull goes at least so far, because hands draw back to rest after whatever they
+    /// did. 40..600. Measured: hands that draw back 100..130, a pull 300.
+    double pull_length_mm = 150.0;
 
     // --- pinch -----------------------------------------------------------------------------------
     /// Thumb tip to index tip, or the share of the hand's length if that is more. 5..40; 0..0.3.
