@@ -5,11 +5,17 @@
 
 #include <xtrack/hand.hpp>
 
+#include "gestures/recognise/circle.hpp"
 #include "gestures/recognise/context.hpp"
+#include "gestures/recognise/double.hpp"
+#include "gestures/recognise/grab.hpp"
 #include "gestures/recognise/pinch.hpp"
+#include "gestures/recognise/pose.hpp"
 #include "gestures/recognise/presence.hpp"
 #include "gestures/recognise/push.hpp"
+#include "gestures/recognise/raise.hpp"
 #include "gestures/recognise/swipe.hpp"
+#include "gestures/recognise/tap.hpp"
 #include "gestures/recognise/wave.hpp"
 
 namespace xtrack::recognise {
@@ -23,18 +29,49 @@ namespace xtrack::recognise {
 ///   - sends(settings): what it would send next is switched on.
 struct Machines {
     PinchMachine pinch;
+    GrabMachine grab;
+    CircleMachine circle;
     WaveMachine wave;
     SwipeMachine swipe;
     PushMachine push;
+    TapMachine tap;
+    RaiseMachine raise;
+    PoseMachine open_palm{GestureType::open_palm};
+    PoseMachine fist{GestureType::fist};
+    PoseMachine point{GestureType::point};
+    PoseMachine victory{GestureType::victory};
+    PoseMachine thumb_up{GestureType::thumb_up};
+    PoseMachine thumb_down{GestureType::thumb_down};
+    DoubleMachine double_pinch{"double_pinch", GestureType::double_pinch};
+    DoubleMachine double_tap{"double_tap", GestureType::double_tap};
 
     /// In the order of their turns: the strong before the weak, but rhythms before strokes, because
-    /// a stroke that is part of a rhythm is none.
+    /// a stroke that is part of a rhythm is none, circles before waves, because a circle goes to
+    /// and fro as well, and what is made of others after them.
     template <typename Act>
     void each(const Act& act) {
         act(pinch);
+        act(grab);
+        act(circle);
         act(wave);
         act(swipe);
         act(push);
+        act(tap);
+        act(raise);
+        act(open_palm);
+        act(fist);
+        act(point);
+        act(victory);
+        act(thumb_up);
+        act(thumb_down);
+        act(double_pinch);
+        act(double_tap);
+    }
+
+    /// Tells what is made of other gestures of what these have sent.
+    void listen() noexcept {
+        double_pinch.hear(pinch.gesture_id());
+        double_tap.hear(tap.gesture_id());
     }
 };
 
@@ -102,11 +139,13 @@ struct HandSlot {
             c.taken =
                 strongest < machine.kRank || (strongest == machine.kRank && holder != &machine);
             machine.update(c);
+            machines.listen();
             if (machine.holds() || c.out.all().size() != before) {
                 take(machine);
             }
             // A first stroke may become either; who has turned back twice does not swipe.
-            if (machine.kRank == Rank::rhythm && machines.wave.swings()) {
+            if (machine.kRank == Rank::rhythm &&
+                (machines.wave.swings() || machines.circle.swings())) {
                 strongest = std::min(strongest, Rank::grip);
             }
         });
