@@ -26,6 +26,7 @@ namespace xtrack::recognise {
 ///   - drop(c, reason, why): lost, taken, switched off: what is active is cancelled;
 ///   - finish(c): the stream is over: what is active ends;
 ///   - holds(): something is active;
+///   - swings(), of rhythms: what goes on is one, though not yet sent, and no stroke;
 ///   - sends(settings): what it would send next is switched on.
 struct Machines {
     PinchMachine pinch;
@@ -143,10 +144,12 @@ struct HandSlot {
             if (machine.holds() || c.out.all().size() != before) {
                 take(machine);
             }
-            // A first stroke may become either; who has turned back twice does not swipe.
-            if (machine.kRank == Rank::rhythm &&
-                (machines.wave.swings() || machines.circle.swings())) {
-                strongest = std::min(strongest, Rank::grip);
+            // A first stroke may become either; who has turned back twice, or gone round, does not
+            // swipe.
+            if constexpr (requires { machine.swings(); }) {
+                if (machine.swings()) {
+                    strongest = std::min(strongest, Rank::grip);
+                }
             }
         });
     }
