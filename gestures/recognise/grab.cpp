@@ -103,6 +103,7 @@ void GrabMachine::update(const Context& c) {
 void GrabMachine::drop(const Context& c, CancelReason reason, const char* why) {
     if (state() != State::away) {
         reason_ = reason;
+        broke_ = closed() ? reason : CancelReason::none;
         handle(c, Event::dropped, {why, 0.0, 0.0});
     }
 }
@@ -168,6 +169,7 @@ std::optional<GrabMachine::State> GrabMachine::closing(const Context& c, Event e
     switch (event) {
         case Event::closed: return State::closing;
         case Event::held:
+            broke_ = CancelReason::none;
             onset_ = open_at_;
             gesture_id_ = c.next_gesture_id++;
             send(c, EventPhase::begin);

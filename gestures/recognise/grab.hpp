@@ -30,7 +30,7 @@ class GrabMachine : public Machine<GrabMachine, GrabState, GrabEvent> {
     static constexpr Rank kRank = Rank::grip;
     [[nodiscard]] static bool sends(const GestureSettings& s) noexcept { return s.grab; }
     [[nodiscard]] static bool wanted(const GestureSettings& s) noexcept {
-        return s.grab || s.drag || s.two_hand_zoom || s.two_hand_rotate;
+        return s.grab || s.two_hand_zoom || s.two_hand_rotate;
     }
 
     /// A new sample is in the history.
@@ -45,6 +45,8 @@ class GrabMachine : public Machine<GrabMachine, GrabState, GrabEvent> {
     void carry(const Context& c);
 
     [[nodiscard]] bool holds() const noexcept { return state() == GrabState::grabbed; }
+    /// Why it last came open, if it was not opened.
+    [[nodiscard]] CancelReason broke() const noexcept { return broke_; }
     /// The hand is closed, whoever has it.
     [[nodiscard]] bool closed() const noexcept {
         return state() == GrabState::grabbed || state() == GrabState::carried;
@@ -71,10 +73,11 @@ class GrabMachine : public Machine<GrabMachine, GrabState, GrabEvent> {
     void send(const Context& c, EventPhase phase);
 
     CancelReason reason_ = CancelReason::none;  ///< of the cancel that is on its way
-    Stamp open_at_;                             ///< newest sample with the hand open
-    Stamp closed_at_;                           ///< first sample with the hand closed
-    Stamp onset_;                               ///< of the grab that is active
-    Stamp known_at_;                            ///< newest sample whose strength is known
+    CancelReason broke_ = CancelReason::none;
+    Stamp open_at_;    ///< newest sample with the hand open
+    Stamp closed_at_;  ///< first sample with the hand closed
+    Stamp onset_;      ///< of the grab that is active
+    Stamp known_at_;   ///< newest sample whose strength is known
     double strength_ = 0.0;
     int gesture_id_ = -1;
 };

@@ -1,21 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-
 #include <xtrack/hand.hpp>
+#include <xtrack/one_euro_filter.hpp>
 
 #include "gestures/recognise/circle.hpp"
 #include "gestures/recognise/context.hpp"
 #include "gestures/recognise/double.hpp"
+#include "gestures/recognise/drag.hpp"
+#include "gestures/recognise/dwell.hpp"
 #include "gestures/recognise/grab.hpp"
 #include "gestures/recognise/pinch.hpp"
 #include "gestures/recognise/pose.hpp"
 #include "gestures/recognise/presence.hpp"
+#include "gestures/recognise/press.hpp"
 #include "gestures/recognise/push.hpp"
 #include "gestures/recognise/raise.hpp"
+#include "gestures/recognise/silence.hpp"
 #include "gestures/recognise/swipe.hpp"
 #include "gestures/recognise/tap.hpp"
+#include "gestures/recognise/touch.hpp"
 #include "gestures/recognise/wave.hpp"
 
 namespace xtrack::recognise {
@@ -28,7 +32,10 @@ namespace xtrack::recognise {
 ///   - holds(): something is active;
 ///   - swings(), of rhythms: what goes on is one, though not yet sent, and no stroke;
 ///   - sends(settings): what it would send next is switched on.
+/// The drag is one more, which needs to hear of the others' grip.
 struct Machines {
+    PressMachine press;
+    TouchMachine touch;
     PinchMachine pinch;
     GrabMachine grab;
     CircleMachine circle;
@@ -37,6 +44,7 @@ struct Machines {
     PushMachine push;
     TapMachine tap;
     RaiseMachine raise;
+    DwellMachine dwell;
     PoseMachine open_palm{GestureType::open_palm};
     PoseMachine fist{GestureType::fist};
     PoseMachine point{GestureType::point};
@@ -45,12 +53,15 @@ struct Machines {
     PoseMachine thumb_down{GestureType::thumb_down};
     DoubleMachine double_pinch{"double_pinch", GestureType::double_pinch};
     DoubleMachine double_tap{"double_tap", GestureType::double_tap};
+    DragMachine drag;
 
     /// In the order of their turns: the strong before the weak, but rhythms before strokes, because
     /// a stroke that is part of a rhythm is none, circles before waves, because a circle goes to
     /// and fro as well, and what is made of others after them.
     template <typename Act>
     void each(const Act& act) {
+        act(press);
+        act(touch);
         act(pinch);
         act(grab);
         act(circle);
@@ -59,6 +70,7 @@ struct Machines {
         act(push);
         act(tap);
         act(raise);
+        act(dwell);
         act(open_palm);
         act(fist);
         act(point);
@@ -69,10 +81,23 @@ struct Machines {
         act(double_tap);
     }
 
+    template <typename Act>
+    void each_and_drag(const Act& act) {
+        act(drag);
+        each(act);
+    }
+
     /// Tells what is made of other gestures of what these have sent.
     void listen() noexcept {
         double_pinch.hear(pinch.gesture_id());
         double_tap.hear(tap.gesture_id());
+    }
+
+    /// Those that something else can go on with are taken over: cancelled, but followed.
+    void carry(const Context& c) {
+        press.carry(c);
+        pinch.carry(c);
+        grab.carry(c);
     }
 };
 
@@ -83,76 +108,33 @@ struct HandSlot {
     Hand hand;  ///< as last seen
     Presence presence;
     MotionHistory history;
+    OneEuroFilter3 pointer;
+    SignalMeter meter;
+    Silence silence;
     Machines machines;
+    bool was_active = false;  ///< a gesture was, in the last frame
+    bool summons = false;     ///< it has just waved: for a session that is idle
 
-    void begin(const Hand& seen, Stamp now, bool in_view) {
-        used = true;
-        hand = seen;
-        history.clear();
-        machines = {};
-        presence.appear(now, in_view);
-    }
+    void begin(const Hand& seen, Stamp now, bool in_view);
+    /// @return false when the sample was left out (MotionHistory::add())
+    bool add(Stamp now, Duration span);
+    void forget_motion();
 
-    void drop(const Context& c, CancelReason reason, const char* why) {
-        machines.each([&](auto& machine) { machine.drop(c, reason, why); });
-    }
-
+    void drop(const Context& c, CancelReason reason, const char* why);
     /// What is active and will not be wanted any more is cancelled.
-    void switch_off(const Context& c, const GestureSettings& future) {
-        machines.each([&](auto& machine) {
-            if (machine.sends(c.settings) && !machine.sends(future)) {
-                machine.drop(c, CancelReason::disengaged, "switched off");
-            }
-        });
-    }
-
-    void finish(const Context& c) {
-        machines.each([&](auto& machine) { machine.finish(c); });
-    }
+    void switch_off(const Context& c, const GestureSettings& future);
+    void finish(const Context& c);
 
     /// A gesture of this hand is active.
-    [[nodiscard]] bool holds() {
-        bool any = false;
-        machines.each([&](const auto& machine) { any = any || machine.holds(); });
-        return any;
-    }
+    [[nodiscard]] bool holds();
+    /// What it holds on with, of the gestures that a drag can come from.
+    [[nodiscard]] Grip grip(const GestureSettings& settings) const;
+    /// The fingers hold, whoever has the hand: for gestures of two hands.
+    [[nodiscard]] Grip fingers() const;
 
     /// The newest sample goes through all machines that are wanted.
-    void update(Context& c) {
-        Rank strongest = Rank::none;
-        const void* holder = nullptr;
-        const auto take = [&](const auto& machine) {
-            if (machine.kRank < strongest) {
-                strongest = machine.kRank;
-                holder = &machine;
-            }
-        };
-        machines.each([&](const auto& machine) {
-            if (machine.holds()) {
-                take(machine);
-            }
-        });
-        machines.each([&](auto& machine) {
-            if (!machine.wanted(c.settings)) {
-                return;
-            }
-            const std::size_t before = c.out.all().size();
-            c.taken =
-                strongest < machine.kRank || (strongest == machine.kRank && holder != &machine);
-            machine.update(c);
-            machines.listen();
-            if (machine.holds() || c.out.all().size() != before) {
-                take(machine);
-            }
-            // A first stroke may become either; who has turned back twice, or gone round, does not
-            // swipe.
-            if constexpr (requires { machine.swings(); }) {
-                if (machine.swings()) {
-                    strongest = std::min(strongest, Rank::grip);
-                }
-            }
-        });
-    }
+    /// @param two_handed a gesture of two hands has it
+    void update(Context& c, bool two_handed);
 };
 
 }  // namespace xtrack::recognise

@@ -29,6 +29,8 @@ constexpr Duration kApertureLost = std::chrono::milliseconds{300};
 // that see a hand well know 0.75 and more, a hand whose tips come and go 0.6 and less.
 constexpr double kApproachShare = 0.65;
 constexpr double kSmallestWayMm = 1.0;
+// A pinch that must open by more than this would not open any more.
+constexpr double kMostNoiseMm = 6.0;
 constexpr double kCapShare = 1.25;  // of pinch_close_mm: a hand length may be measured badly
 
 class Mean {
@@ -97,6 +99,13 @@ double approach_seen(const MotionHistory& history, Stamp closed_at, const Gestur
         }
     }
     return all > 0 ? static_cast<double>(seen) / all : 0.0;
+}
+
+/// Three sigma above what closes, by the noise that the hand itself shows. The aperture is a mean.
+double release_mm(const Context& c) {
+    const GestureSettings& s = c.settings;
+    return s.pinch_close_mm + Signal::apart(s.pinch_release_mm - s.pinch_close_mm,
+                                            std::min(c.signal.aperture_noise_mm, kMostNoiseMm));
 }
 
 double close_mm(const Context& c) {
@@ -182,6 +191,7 @@ void PinchMachine::finish(const Context& c) {
 
 void PinchMachine::handle(const Context& c, Event event, const Refusal& refusal,
                           CancelReason reason) {
+    broke_ = event == Event::dropped ? reason : CancelReason::none;
     reporter_.report(c, step(state_, event, next(c, event, reason)), refusal,
                      [](auto of) { return name(of); });
 }
@@ -305,7 +315,7 @@ PinchMachine::Event PinchMachine::judge(const Context& c, double aperture_mm,
     const GestureSettings& s = c.settings;
     const bool together = state_ == State::touching || closed();
     if (together) {
-        if (aperture_mm >= s.pinch_release_mm) {
+        if (aperture_mm >= release_mm(c)) {
             return Event::released;
         }
         if (closed()) {
@@ -313,7 +323,7 @@ PinchMachine::Event PinchMachine::judge(const Context& c, double aperture_mm,
         }
         const double held_ms = to_ms(c.sensor - closed_at_);
         // A graze that opens again is inside the hysteresis, but on its way out.
-        const double inner_mm = 0.5 * (s.pinch_close_mm + s.pinch_release_mm);
+        const double inner_mm = 0.5 * (s.pinch_close_mm + release_mm(c));
         if (held_ms < s.pinch_hold_ms || aperture_mm > inner_mm) {
             return Event::closed;
         }
@@ -335,7 +345,7 @@ PinchMachine::Event PinchMachine::judge(const Context& c, double aperture_mm,
         refusal = spoiler(c);
         return *refusal.why == '\0' ? Event::held : Event::spoilt;
     }
-    if (aperture_mm >= s.pinch_open_mm) {
+    if (aperture_mm >= std::max(s.pinch_open_mm, release_mm(c))) {
         return Event::opened;
     }
     if (state_ == State::armed && to_ms(c.sensor - open_at_) > s.pinch_approach_ms) {

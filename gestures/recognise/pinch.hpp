@@ -14,8 +14,8 @@ class PinchMachine {
     static constexpr Rank kRank = Rank::grip;
     [[nodiscard]] static bool sends(const GestureSettings& s) noexcept { return s.pinch; }
     [[nodiscard]] static bool wanted(const GestureSettings& s) noexcept {
-        return s.pinch || s.double_pinch || s.drag || s.two_hand_zoom || s.two_hand_rotate ||
-               s.grab || s.tap || s.double_tap;  // what is a pinch is none of these
+        return s.pinch || s.double_pinch || s.two_hand_zoom || s.two_hand_rotate || s.grab ||
+               s.tap || s.double_tap;  // what is a pinch is none of these
     }
 
     /// A new sample is in the history.
@@ -36,6 +36,8 @@ class PinchMachine {
     [[nodiscard]] bool closed() const noexcept {
         return state_ == State::pinched || state_ == State::carried;
     }
+    /// Why they last came apart, if they were not opened.
+    [[nodiscard]] CancelReason broke() const noexcept { return broke_; }
 
  private:
     enum class State { away, armed, touching, pinched, carried, spoilt };
@@ -76,6 +78,7 @@ class PinchMachine {
     Stamp onset_;        ///< of the pinch that is active
     Stamp aperture_at_;  ///< newest sample with a known aperture
     int gesture_id_ = -1;
+    CancelReason broke_ = CancelReason::none;
 };
 
 }  // namespace xtrack::recognise

@@ -61,7 +61,9 @@ const char* PushMachine::name(Event e) {
 void PushMachine::update(const Context& c) {
     const Stamp now = c.history.newest().stamp;
     const Vec3f velocity = c.history.velocity(from_ms(c.settings.velocity_window_ms));
-    const bool slow = static_cast<double>(velocity.norm()) < c.settings.push_stable_mmps;
+    const bool slow =
+        static_cast<double>(velocity.norm()) <
+        c.signal.still_mmps(c.settings.push_stable_mmps, from_ms(c.settings.velocity_window_ms));
     if (slow && !slow_) {
         stable_since_ = now;
     }

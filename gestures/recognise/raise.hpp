@@ -17,8 +17,11 @@ class RaiseMachine : public Machine<RaiseMachine, RaiseState, RaiseEvent> {
     RaiseMachine() : Machine("raise", RaiseState::moving) {}
 
     static constexpr Rank kRank = Rank::stroke;
-    [[nodiscard]] static bool wanted(const GestureSettings& s) noexcept { return s.raise; }
-    [[nodiscard]] static bool sends(const GestureSettings& s) noexcept { return wanted(s); }
+    static constexpr bool kSummons = true;  ///< it can take an idle session
+    [[nodiscard]] static bool wanted(const GestureSettings& s) noexcept {
+        return s.raise || (s.engage && s.engage_by_raise);
+    }
+    [[nodiscard]] static bool sends(const GestureSettings& s) noexcept { return s.raise; }
     [[nodiscard]] bool holds() const noexcept { return false; }
 
     /// A new sample is in the history.
