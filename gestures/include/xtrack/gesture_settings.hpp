@@ -17,13 +17,13 @@ struct GestureSettings {
     // --- what is recognised ----------------------------------------------------------------------
     bool swipe = true;
     bool push = true;
-    bool pull = false;
+    bool pull = true;
     bool pinch = true;
     bool double_pinch = false;
-    bool grab = false;
-    bool tap = false;
+    bool grab = true;
+    bool tap = true;
     bool double_tap = false;
-    bool circle = false;
+    bool circle = true;
     bool wave = false;  ///< off: who beckons or gesticulates waves too
     bool raise = false;
     bool dwell = false;
