@@ -9,6 +9,7 @@
 
 #include "tools/commands.hpp"
 #include "tools/eval/evaluation.hpp"
+#include "tools/eval/timeline.hpp"
 #include "tools/progress.hpp"
 #include "tools/stream.hpp"
 
@@ -19,6 +20,7 @@ namespace {
 struct EvalOptions {
     std::vector<std::string> recordings;
     std::optional<std::string> gestures;
+    std::string timeline;  ///< folder or file of pictures; empty = none
     bool json = false;
 };
 
@@ -56,6 +58,15 @@ int run_eval(const EvalOptions& options) {
     if (const auto chosen = choose_gestures(options.gestures, session.gestures); !chosen) {
         return usage(chosen.error());
     }
+    std::optional<TimelineFolder> pictures;
+    if (!options.timeline.empty()) {
+        auto folder = TimelineFolder::create(options.timeline, options.recordings.size());
+        if (!folder) {
+            return folder.error().code == ErrorCode::invalid_argument ? usage(folder.error())
+                                                                      : fail(folder.error());
+        }
+        pictures = std::move(*folder);
+    }
     Evaluation evaluation;
     evaluation.all = GestureScorer(session.gestures);
     std::optional<Progress> progress(std::in_place, "evaluating", options.recordings.size());
@@ -72,6 +83,13 @@ int run_eval(const EvalOptions& options) {
     // What the others took an hour to say is not thrown away for one that is torn; the status and
     // the last lines say that it is missing from the figures.
     int status = 0;
+    for (const EvaluatedRecording& recording : evaluation.recordings) {
+        const Result<void> written = pictures ? pictures->write(recording) : Result<void>();
+        if (!written) {
+            status = fail(written.error());
+            break;  // the others go to the same disk
+        }
+    }
     for (const FailedRecording& failed : evaluation.failed) {
         status = fail(failed.error);
     }
@@ -87,6 +105,12 @@ void add_eval(CLI::App& app, int& exit_status) {
     command->add_option("REC", options->recordings, "Folders of recordings")->required();
     command->add_option("--gestures", options->gestures,
                         "Comma-separated list of what is recognised (default: all)");
+    command
+        ->add_option("--timeline", options->timeline,
+                     "Draws labels and events of each recording on a time axis: a folder for "
+                     "pictures, or one that ends in .png")
+        ->type_name("DIR|FILE.png")
+        ->check(not_empty());
     command->add_flag("--json", options->json, "One JSON object instead of tables");
     command->callback([=, &exit_status] { exit_status = run_eval(*options); });
 }
