@@ -129,11 +129,17 @@ Result<std::vector<RecordingEntry>> parse_frame_list(std::string_view text, cons
     return entries;
 }
 
+std::string frame_list_head() { return "file,t_us,sequence,pattern\n"; }
+
+std::string frame_list_line(const RecordingEntry& e) {
+    return e.file + "," + std::to_string(e.stamp.us()) + "," + std::to_string(e.sequence) + "," +
+           (e.pattern == kUnknownPattern ? "" : std::to_string(e.pattern)) + "\n";
+}
+
 std::string frame_list_text(const std::vector<RecordingEntry>& entries) {
-    std::string text = "file,t_us,sequence,pattern\n";
-    for (const RecordingEntry& e : entries) {
-        text += e.file + "," + std::to_string(e.stamp.us()) + "," + std::to_string(e.sequence) +
-                "," + (e.pattern == kUnknownPattern ? "" : std::to_string(e.pattern)) + "\n";
+    std::string text = frame_list_head();
+    for (const RecordingEntry& entry : entries) {
+        text += frame_list_line(entry);
     }
     return text;
 }

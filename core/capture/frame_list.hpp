@@ -18,7 +18,9 @@ namespace xtrack::capture {
                                                                    const std::string& name,
                                                                    std::size_t patterns);
 
-/// The text that parse_frame_list() reads back.
+/// The text that parse_frame_list() reads back; its first line; the line of an image.
 [[nodiscard]] std::string frame_list_text(const std::vector<RecordingEntry>& entries);
+[[nodiscard]] std::string frame_list_head();
+[[nodiscard]] std::string frame_list_line(const RecordingEntry& entry);
 
 }  // namespace xtrack::capture

@@ -122,7 +122,8 @@ class RecordingReader {
 [[nodiscard]] Result<std::unique_ptr<DepthSource>> depth_source(const RecordingReader& recording);
 
 /// Writes a recording. Everything goes into a temporary folder beside the target, which gets its
-/// name at close(): a recording is there whole or not at all. Without a close() nothing remains.
+/// name at close(): a recording is there whole or not at all. Without a close() nothing remains,
+/// unless the program is killed: then what was added so far can be read in folder().
 /// Images are PNG, so that what is read back is bit for bit what was written.
 /// @thread one at a time
 /// @since 0.1
@@ -155,7 +156,10 @@ class RecordingWriter {
     /// Adds a text file such as `labels.csv` or `truth/hands.csv`; the name stays inside.
     [[nodiscard]] Result<void> add_text(const std::string& name, const std::string& text);
 
-    /// Writes what is left and gives the folder its name. After this only destruction is legal.
+    /// Where it is until close().
+    [[nodiscard]] const std::filesystem::path& folder() const noexcept;
+
+    /// Gives the folder its name. After this only destruction is legal.
     /// @return an Error: no frame was added, no frame of fringes names its pattern, a stamp or a
     ///         sequence is beyond what the format holds, or the disk refuses; nothing remains then
     [[nodiscard]] Result<void> close();
