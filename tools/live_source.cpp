@@ -10,6 +10,7 @@
 
 #include "tools/commands.hpp"
 #include "tools/method_choice.hpp"
+#include "tools/record/as_recorded.hpp"
 
 namespace xtrack::tools {
 
@@ -63,7 +64,11 @@ Result<OpenedSource> open_simulator(const SourceOptions& source, const StreamOpt
     }
     const Rig rig = (*made)->rig();
     const PatternSequence patterns = (*made)->patterns();
-    auto session = Session::create(std::unique_ptr<FrameSource>(std::move(*made)), options);
+    std::unique_ptr<FrameSource> images = std::move(*made);
+    if (source.as_recorded) {
+        images = std::make_unique<AsRecorded>(std::move(images));
+    }
+    auto session = Session::create(std::move(images), options);
     if (!session) {
         return session.error();
     }

@@ -18,6 +18,8 @@ struct SourceOptions {
     std::string source = "sim";
     std::uint64_t seed = 0;
     std::string method;
+    bool as_recorded =
+        false;  ///< what the session sees is what a recording gives again (AsRecorded)
 };
 
 void add_source_options(CLI::App& command, SourceOptions& options);

@@ -12,6 +12,7 @@ namespace xtrack::capture {
 
 /// Reads frames.csv. Names must stay inside the folder and end in png, jpg or jpeg; stamps must not
 /// decrease; pattern indices must be below `patterns`, and one row at least names its own.
+/// `clean_begin` and `clean_end` may be missing, and empty where all rows are clean.
 /// @param name of the file, for messages
 /// @param patterns how many there are; 0 for depth, where the column may be missing and is not read
 [[nodiscard]] Result<std::vector<RecordingEntry>> parse_frame_list(std::string_view text,

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdio>
 #include <utility>
 #include <vector>
@@ -147,7 +148,13 @@ Result<void> RecordingWriter::add(const Frame& frame) {
     }
     const std::string file = "frames/" + image_name(s.entries.size());
     s.size = frame.size();
-    return add_image(s.folder, s.entries, {file, frame.stamp, frame.sequence, frame.pattern}, *png);
+    RecordingEntry entry{file, frame.stamp, frame.sequence, frame.pattern};
+    const bool all = frame.clean_row_begin <= 0 && frame.clean_row_end >= frame.height();
+    if (!all && frame.clean_row_begin < frame.clean_row_end) {
+        entry.clean_row_begin = std::max(frame.clean_row_begin, 0);
+        entry.clean_row_end = std::min(frame.clean_row_end, frame.height());
+    }
+    return add_image(s.folder, s.entries, std::move(entry), *png);
 }
 
 Result<void> RecordingWriter::add(const DepthFrame& depth) {

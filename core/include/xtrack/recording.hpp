@@ -40,6 +40,9 @@ struct RecordingEntry {
     Stamp stamp;
     std::uint64_t sequence = 0;
     int pattern = kUnknownPattern;
+    /// Frame's, where some rows saw another pattern; the end is 0 where nobody says: all are clean.
+    int clean_row_begin = 0;
+    int clean_row_end = 0;
 };
 
 /// A folder of images with their stamps: the format that docs/recordings.md describes. open()
@@ -145,7 +148,8 @@ class RecordingWriter {
     ~RecordingWriter();
 
     /// Adds an image of fringes. Stamps must not decrease, sizes must not change. The format has no
-    /// place for `status` and the clean rows: read back, a frame is `ok` and all of its rows clean.
+    /// place for `status`: read back, a frame is `ok`. One without any clean row, as a frame is
+    /// made, is read back as one that is clean all over.
     [[nodiscard]] Result<void> add(const Frame& frame);
     /// Adds a depth image, in the unit of the setup.
     [[nodiscard]] Result<void> add(const DepthFrame& depth);
