@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/record/recorder.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -110,6 +111,15 @@ Result<void> Recorder::add_joints(const HandFrame& hands) {
                                  (setup_.out / kJointsFile).string(), kMaxJointMoments)};
     }
     HandFrame frame = hands;
+    frame.count = 0;
+    for (const Hand& hand : hands.all()) {
+        const auto kept = frame.all();
+        // Readers refuse one id twice in a moment; the better seen comes first.
+        if (std::none_of(kept.begin(), kept.end(),
+                         [&](const Hand& other) { return other.id == hand.id; })) {
+            frame.hands[frame.count++] = hand;
+        }
+    }
     for (Hand& hand : frame.all()) {
         const bool from_depth = !hand.joint(Joint::palm).valid && !hand.joint(Joint::wrist).valid;
         if (from_depth) {
