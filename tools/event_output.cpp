@@ -28,20 +28,16 @@ Json time_json(const TimeStatistics& t) {
         {"count", t.count}, {"median_us", t.median_us}, {"p99_us", t.p99_us}, {"max_us", t.max_us}};
 }
 
-bool one_shot(GestureType type) {
-    return type == GestureType::swipe || type == GestureType::push || type == GestureType::wave;
-}
-
 }  // namespace
 
 bool worth_a_text_line(const GestureEvent& event) {
     return event.phase != EventPhase::update &&
-           !(one_shot(event.type) && event.phase == EventPhase::begin);
+           !(is_one_shot(event.type) && event.phase == EventPhase::begin);
 }
 
 std::string to_text(const GestureEvent& event, Pace pace) {
     std::string what = name_of(event);
-    if (!one_shot(event.type)) {
+    if (!is_one_shot(event.type)) {
         what += std::string(" ") + to_string(event.phase);
     }
     if (event.phase == EventPhase::cancel) {

@@ -21,17 +21,12 @@ namespace xtrack::tools {
 
 namespace {
 
-constexpr std::array<std::pair<const char*, bool GestureSettings::*>, 4> kSwitches = {{
-    {"swipe", &GestureSettings::swipe},
-    {"push", &GestureSettings::push},
-    {"pinch", &GestureSettings::pinch},
-    {"wave", &GestureSettings::wave},
-}};
-
 std::string known_gestures() {
     std::string names;
-    for (const auto& [name, member] : kSwitches) {
-        names += names.empty() ? name : std::string(", ") + name;
+    for (const GestureField& field : gesture_fields()) {
+        if (field.is_switch) {
+            names += names.empty() ? field.name : std::string(", ") + field.name;
+        }
     }
     return names;
 }
@@ -105,15 +100,17 @@ Result<void> choose_gestures(const std::optional<std::string>& list, GestureSett
     if (!list) {
         return {};
     }
-    for (const auto& [name, member] : kSwitches) {
-        settings.*member = false;
+    for (const GestureField& field : gesture_fields()) {
+        if (field.is_switch) {
+            field.set(settings, 0.0);
+        }
     }
     std::istringstream names(*list + ',');  // so that what is empty is read, and refused
     for (std::string wanted; std::getline(names, wanted, ',');) {
         bool found = false;
-        for (const auto& [name, member] : kSwitches) {
-            if (wanted == name) {
-                settings.*member = true;
+        for (const GestureField& field : gesture_fields()) {
+            if (field.is_switch && wanted == field.name) {
+                field.set(settings, 1.0);
                 found = true;
             }
         }

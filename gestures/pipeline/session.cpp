@@ -226,6 +226,36 @@ DecodeSettings Session::decode_settings() const noexcept {
 
 bool Session::uses(const DecodeField& field) const noexcept { return impl_->processor.uses(field); }
 
+Result<void> Session::set_gesture_settings(const GestureSettings& settings) {
+    if (auto valid = validate(settings); !valid) {
+        return valid;
+    }
+    if (!metric() && demands_of(settings).metric) {
+        return Error{ErrorCode::unsupported,
+                     "gesture settings: without a calibration there are no true millimetres, which "
+                     "pinch and its like need; switch them off"};
+    }
+    const MutexLock lock(impl_->wishes_mutex);
+    impl_->gesture_settings = settings;
+    impl_->wishes = true;
+    return {};
+}
+
+GestureSettings Session::gesture_settings() const {
+    const MutexLock lock(impl_->wishes_mutex);
+    return impl_->gesture_settings;
+}
+
+void Session::pause(bool paused) {
+    const MutexLock lock(impl_->wishes_mutex);
+    impl_->paused = paused;
+    impl_->wishes = true;
+}
+
+void Session::set_trace(GestureRecogniser::TraceSink sink) {
+    impl_->processor.recogniser().set_trace(std::move(sink));
+}
+
 Result<void> Session::learn_background() {
     PaperDecoder* paper = impl_->processor.paper();
     return paper == nullptr ? no_paper_decoder() : paper->learn_background();

@@ -75,7 +75,25 @@ void Session::Impl::deliver(std::span<const GestureEvent> events) {
     }
 }
 
+void Session::Impl::heed_wishes() {
+    if (!wishes.exchange(false)) {
+        return;
+    }
+    GestureSettings settings;
+    bool pause = false;
+    {
+        const MutexLock lock(wishes_mutex);
+        settings = gesture_settings;
+        pause = paused;
+    }
+    if (const auto cancelled = processor.recogniser().set_settings(settings)) {
+        deliver(*cancelled);
+    }
+    deliver(processor.recogniser().pause(pause));
+}
+
 void Session::Impl::tick() {
+    heed_wishes();
     // What counts is how long ago the newest item came, not how old its stamp is: a source that
     // delivers 150 ms late has not lost the hand. Only a device's time goes on without items: what
     // a recording or a simulator shows next says itself how long the hand was away, however long
@@ -104,6 +122,7 @@ Result<StepStatus> Session::Impl::take() {
             (void)finish(StepStatus::stopped);
             return Error{ErrorCode::io, item.message};
     }
+    heed_wishes();
     const auto begin = Wall::now();
     auto outcome = processor.process(item);
     if (!outcome) {

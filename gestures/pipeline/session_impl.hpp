@@ -29,7 +29,8 @@ struct Session::Impl {
         : input(std::move(in)),
           processor(std::move(proc)),
           pace(pace_in),
-          clock(pace_in, input.delivery_delay()) {}
+          clock(pace_in, input.delivery_delay()),
+          gesture_settings(processor.recogniser().settings()) {}
 
     template <typename Source, typename MakeProcessor>
     static Result<Session> session_of(std::unique_ptr<Source> source, Pace pace,
@@ -47,6 +48,8 @@ struct Session::Impl {
     Result<void> run();
     void read_live();
     void tick();
+    /// What was asked for from any thread since the last item.
+    void heed_wishes();
     void deliver(std::span<const GestureEvent> events);
     /// Notes that what is thrown meanwhile is the caller's.
     template <typename Callbacks, typename Arg>
@@ -85,6 +88,11 @@ struct Session::Impl {
     std::thread worker;
     std::atomic<std::thread::id> worker_id;
     Result<void> worker_result;
+
+    mutable Mutex wishes_mutex;
+    GestureSettings gesture_settings XTRACK_GUARDED_BY(wishes_mutex);
+    bool paused XTRACK_GUARDED_BY(wishes_mutex) = false;
+    std::atomic<bool> wishes{false};  ///< one of the two has changed
 
     mutable Mutex statistics_mutex;
     SessionStatistics counters XTRACK_GUARDED_BY(statistics_mutex);

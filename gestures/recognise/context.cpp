@@ -3,6 +3,22 @@
 
 namespace xtrack::recognise {
 
+const char* why(Gate gate) noexcept {
+    switch (gate) {
+        case Gate::open: return "";
+        case Gate::entering: return "the hand enters";
+        case Gate::border: return "the hand touches the border";
+        case Gate::fist: return "a fist says nothing";
+        case Gate::bystander: return "not the hand of the session";
+        case Gate::paused: return "paused";
+    }
+    return "";
+}
+
+CancelReason reason_of(Gate gate) noexcept {
+    return gate == Gate::border ? CancelReason::edge : CancelReason::disengaged;
+}
+
 GestureEvent event_of(const Context& c, GestureType type, EventPhase phase) noexcept {
     GestureEvent e;
     e.type = type;

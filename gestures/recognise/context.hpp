@@ -14,16 +14,21 @@
 
 namespace xtrack::recognise {
 
-/// Events of one call. More than two hands can cause in one frame, so that it cannot overflow.
+/// Events of one call. More than all hands can cause in one frame, so that it cannot overflow.
+/// What is not wanted does not get in: a machine may run for the sake of another.
 class Outbox {
  public:
-    static constexpr std::size_t kCapacity = 64;
+    static constexpr std::size_t kCapacity = 160;
+
+    explicit Outbox(const GestureSettings& settings) : settings_(&settings) {}
 
     void clear() noexcept { count_ = 0; }
     /// Of the hands that the next events are made from: HandFrame::metric.
     void set_metric(bool metric) noexcept { metric_ = metric; }
+    /// Of a hand that is only watched.
+    void mute(bool muted) noexcept { muted_ = muted; }
     void add(const GestureEvent& event) noexcept {
-        if (count_ < kCapacity) {
+        if (count_ < kCapacity && !muted_ && is_wanted(*settings_, event.type)) {
             events_[count_] = event;
             events_[count_++].metric = metric_;
         }
@@ -36,6 +41,8 @@ class Outbox {
     std::array<GestureEvent, kCapacity> events_{};
     std::size_t count_ = 0;
     bool metric_ = true;
+    bool muted_ = false;
+    const GestureSettings* settings_;
 };
 
 /// The one place that every transition and every refusal of every machine goes through.
@@ -55,8 +62,29 @@ class TransitionLog {
 /// Why the gestures of a hand are silent just now.
 enum class Gate {
     open,
-    entering,  ///< the lock-out after it came
-    border,    ///< cut by the image's border
+    entering,   ///< the lock-out after it came
+    border,     ///< cut by the image's border
+    fist,       ///< it says nothing
+    bystander,  ///< the session is another's, or nobody's
+    paused,
+};
+
+/// For the trace. Static storage.
+[[nodiscard]] const char* why(Gate gate) noexcept;
+
+/// Of what is active while a gate shuts.
+[[nodiscard]] CancelReason reason_of(Gate gate) noexcept;
+
+/// Which gesture wins a hand: the strongest first. What holds the hand silences all weaker ones and
+/// its equals.
+enum class Rank {
+    two_hands,
+    press,   ///< press, touch, drag
+    grip,    ///< pinch, grab
+    stroke,  ///< swipe, push, pull, tap, raise
+    rhythm,  ///< circle, wave
+    pose,    ///< poses, dwell
+    none,
 };
 
 /// Why a candidate waits or dies; `why` is a literal, empty for no objection.

@@ -53,10 +53,30 @@ void append_quoted_or_null(std::string& out, bool known, const char* text) {
 const char* to_string(GestureType t) noexcept {
     switch (t) {
         case GestureType::hand: return "hand";
+        case GestureType::engage: return "engage";
         case GestureType::swipe: return "swipe";
         case GestureType::push: return "push";
+        case GestureType::pull: return "pull";
         case GestureType::pinch: return "pinch";
+        case GestureType::double_pinch: return "double_pinch";
+        case GestureType::grab: return "grab";
+        case GestureType::tap: return "tap";
+        case GestureType::double_tap: return "double_tap";
+        case GestureType::circle: return "circle";
         case GestureType::wave: return "wave";
+        case GestureType::raise: return "raise";
+        case GestureType::dwell: return "dwell";
+        case GestureType::press: return "press";
+        case GestureType::touch: return "touch";
+        case GestureType::drag: return "drag";
+        case GestureType::open_palm: return "open_palm";
+        case GestureType::fist: return "fist";
+        case GestureType::point: return "point";
+        case GestureType::victory: return "victory";
+        case GestureType::thumb_up: return "thumb_up";
+        case GestureType::thumb_down: return "thumb_down";
+        case GestureType::two_hand_zoom: return "two_hand_zoom";
+        case GestureType::two_hand_rotate: return "two_hand_rotate";
     }
     return "unknown";
 }
@@ -68,6 +88,8 @@ const char* to_string(Direction d) noexcept {
         case Direction::right: return "right";
         case Direction::up: return "up";
         case Direction::down: return "down";
+        case Direction::clockwise: return "clockwise";
+        case Direction::counterclockwise: return "counterclockwise";
     }
     return "unknown";
 }
@@ -88,6 +110,7 @@ const char* to_string(CancelReason r) noexcept {
         case CancelReason::lost: return "lost";
         case CancelReason::edge: return "edge";
         case CancelReason::superseded: return "superseded";
+        case CancelReason::timeout: return "timeout";
         case CancelReason::disengaged: return "disengaged";
     }
     return "unknown";
@@ -119,6 +142,10 @@ std::string to_json(const GestureEvent& e) {
     }
     out += R"(,"hand_id":)";
     append(out, std::int64_t{e.hand_id});
+    if (e.other_hand_id != 0) {
+        out += R"(,"other_hand_id":)";
+        append(out, std::int64_t{e.other_hand_id});
+    }
     out += R"(,"hand":")";
     out += to_string(e.hand);
     out += R"(","hand_confidence":)";

@@ -21,11 +21,35 @@ constexpr std::int64_t kMaxFrames = 1'000'000;
 constexpr const char* kFingers[kFingerCount] = {"thumb", "index", "middle", "ring", "little"};
 
 /// What a label may say. A bare `swipe` is one in any direction.
-constexpr std::string_view kGestures[] = {
-    "swipe", "swipe_left", "swipe_right",   "swipe_up",        "swipe_down", "push",
-    "pull",  "pinch",      "grab",          "dwell",           "wave",       "circle",
-    "raise", "tap",        "two_hand_zoom", "two_hand_rotate", "open_palm",  "fist",
-    "point", "victory",    "thumb_up",      "thumb_down"};
+constexpr std::string_view kGestures[] = {"swipe",
+                                          "swipe_left",
+                                          "swipe_right",
+                                          "swipe_up",
+                                          "swipe_down",
+                                          "push",
+                                          "pull",
+                                          "pinch",
+                                          "grab",
+                                          "dwell",
+                                          "wave",
+                                          "circle",
+                                          "raise",
+                                          "tap",
+                                          "two_hand_zoom",
+                                          "two_hand_rotate",
+                                          "open_palm",
+                                          "fist",
+                                          "point",
+                                          "victory",
+                                          "thumb_up",
+                                          "thumb_down",
+                                          "press",
+                                          "touch",
+                                          "drag",
+                                          "double_pinch",
+                                          "double_tap",
+                                          "circle_clockwise",
+                                          "circle_counterclockwise"};
 constexpr std::string_view kNotOurs = "x_";
 
 bool is_word(std::string_view text) {

@@ -139,6 +139,7 @@ const char* PinchMachine::name(State s) {
         case State::armed: return "armed";
         case State::touching: return "touching";
         case State::pinched: return "pinched";
+        case State::carried: return "carried";
         case State::spoilt: return "spoilt";
     }
     return "?";
@@ -153,6 +154,7 @@ const char* PinchMachine::name(Event e) {
         case Event::held: return "held";
         case Event::spoilt: return "spoilt";
         case Event::released: return "released";
+        case Event::superseded: return "superseded";
         case Event::dropped: return "dropped";
         case Event::finished: return "finished";
     }
@@ -161,18 +163,18 @@ const char* PinchMachine::name(Event e) {
 
 void PinchMachine::update(const Context& c) {
     const Stamp now = c.history.newest().stamp;
-    if (c.gate == Gate::border) {
-        drop(c, CancelReason::edge);
+    if (c.gate != Gate::open && c.gate != Gate::entering) {
+        drop(c, reason_of(c.gate), why(c.gate));
         return;
     }
-    if (c.taken) {
-        drop(c, CancelReason::superseded);
+    if (c.taken && state_ != State::carried) {
+        drop(c, CancelReason::superseded, "another gesture has the hand");
         return;
     }
     const double aperture_mm = aperture_of(c.history);
     if (aperture_mm < 0.0) {
         if (now - aperture_at_ >= kApertureLost) {
-            drop(c, CancelReason::lost);
+            drop(c, CancelReason::lost, "the fingers are lost");
         }
         return;  // frozen, like a hand that is not seen
     }
@@ -186,14 +188,20 @@ void PinchMachine::update(const Context& c) {
     }
 }
 
-void PinchMachine::drop(const Context& c, CancelReason reason) {
+void PinchMachine::drop(const Context& c, CancelReason reason, const char* why) {
     if (state_ != State::away) {
-        handle(c, Event::dropped, {}, reason);
+        handle(c, Event::dropped, {why, 0.0, 0.0}, reason);
+    }
+}
+
+void PinchMachine::carry(const Context& c) {
+    if (state_ == State::pinched) {
+        handle(c, Event::superseded, {}, CancelReason::superseded);
     }
 }
 
 void PinchMachine::finish(const Context& c) {
-    if (state_ == State::pinched) {
+    if (closed()) {
         handle(c, Event::finished);
     }
 }
@@ -211,6 +219,7 @@ std::optional<PinchMachine::State> PinchMachine::next(const Context& c, Event ev
         case State::armed: return armed(c, event);
         case State::touching: return touching(c, event);
         case State::pinched: return pinched(c, event, reason);
+        case State::carried: return carried(event);
         case State::spoilt: return spoilt(c, event);
     }
     return std::nullopt;
@@ -226,6 +235,7 @@ std::optional<PinchMachine::State> PinchMachine::away(const Context& c, Event ev
         case Event::held:
         case Event::spoilt:
         case Event::released:
+        case Event::superseded:
         case Event::finished: break;
     }
     return std::nullopt;
@@ -241,6 +251,7 @@ std::optional<PinchMachine::State> PinchMachine::armed(const Context& c, Event e
         case Event::held:
         case Event::spoilt:
         case Event::released:
+        case Event::superseded:
         case Event::finished: break;
     }
     return std::nullopt;
@@ -260,6 +271,7 @@ std::optional<PinchMachine::State> PinchMachine::touching(const Context& c, Even
         case Event::opened:
         case Event::between:
         case Event::stale:
+        case Event::superseded:
         case Event::finished: break;
     }
     return std::nullopt;
@@ -271,11 +283,28 @@ std::optional<PinchMachine::State> PinchMachine::pinched(const Context& c, Event
         case Event::closed: send(c, EventPhase::update); return State::pinched;
         case Event::released:
         case Event::finished: send(c, EventPhase::end); return State::away;
+        case Event::superseded: send(c, EventPhase::cancel, reason); return State::carried;
         case Event::dropped: send(c, EventPhase::cancel, reason); return State::away;
         case Event::opened:
         case Event::between:
         case Event::stale:
         case Event::held:
+        case Event::spoilt: break;
+    }
+    return std::nullopt;
+}
+
+std::optional<PinchMachine::State> PinchMachine::carried(Event event) {
+    switch (event) {
+        case Event::closed: return State::carried;
+        case Event::released:
+        case Event::finished:
+        case Event::dropped: return State::away;
+        case Event::opened:
+        case Event::between:
+        case Event::stale:
+        case Event::held:
+        case Event::superseded:
         case Event::spoilt: break;
     }
     return std::nullopt;
@@ -291,6 +320,7 @@ std::optional<PinchMachine::State> PinchMachine::spoilt(const Context& c, Event 
         case Event::held:
         case Event::spoilt:
         case Event::released:
+        case Event::superseded:
         case Event::finished: break;
     }
     return std::nullopt;
@@ -299,12 +329,12 @@ std::optional<PinchMachine::State> PinchMachine::spoilt(const Context& c, Event 
 PinchMachine::Event PinchMachine::judge(const Context& c, double aperture_mm,
                                         Refusal& refusal) const {
     const GestureSettings& s = c.settings;
-    const bool together = state_ == State::touching || state_ == State::pinched;
+    const bool together = state_ == State::touching || closed();
     if (together) {
         if (aperture_mm >= s.pinch_release_mm) {
             return Event::released;
         }
-        if (state_ == State::pinched) {
+        if (closed()) {
             return Event::closed;
         }
         const double held_ms = to_ms(c.sensor - closed_at_);

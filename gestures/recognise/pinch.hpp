@@ -11,18 +11,43 @@ namespace xtrack::recognise {
 /// One pinch machine a hand. The diagram is in docs/gestures/pinch.md and in pinch.cpp.
 class PinchMachine {
  public:
+    static constexpr Rank kRank = Rank::grip;
+    [[nodiscard]] static bool sends(const GestureSettings& s) noexcept { return s.pinch; }
+    [[nodiscard]] static bool wanted(const GestureSettings& s) noexcept {
+        return s.pinch || s.double_pinch || s.drag || s.two_hand_zoom || s.two_hand_rotate;
+    }
+
     /// A new sample is in the history.
     void update(const Context& c);
     /// The hand was lost, came to the border, or was taken: an active pinch is cancelled.
-    void drop(const Context& c, CancelReason reason);
+    void drop(const Context& c, CancelReason reason, const char* why);
     /// The stream is over: an active pinch ends.
     void finish(const Context& c);
 
-    [[nodiscard]] bool active() const noexcept { return state_ == State::pinched; }
+    /// A stronger gesture goes on with the fingers that are together: the pinch is cancelled, and
+    /// followed in silence until they part.
+    void carry(const Context& c);
+
+    [[nodiscard]] bool holds() const noexcept { return state_ == State::pinched; }
+    /// The fingers are together, whoever has the hand.
+    [[nodiscard]] bool closed() const noexcept {
+        return state_ == State::pinched || state_ == State::carried;
+    }
 
  private:
-    enum class State { away, armed, touching, pinched, spoilt };
-    enum class Event { opened, between, stale, closed, held, spoilt, released, dropped, finished };
+    enum class State { away, armed, touching, pinched, carried, spoilt };
+    enum class Event {
+        opened,
+        between,
+        stale,
+        closed,
+        held,
+        spoilt,
+        released,
+        superseded,
+        dropped,
+        finished
+    };
 
     static const char* name(State s);
     static const char* name(Event e);
@@ -34,6 +59,7 @@ class PinchMachine {
     std::optional<State> armed(const Context& c, Event event);
     std::optional<State> touching(const Context& c, Event event);
     std::optional<State> pinched(const Context& c, Event event, CancelReason reason);
+    static std::optional<State> carried(Event event);
     std::optional<State> spoilt(const Context& c, Event event);
 
     [[nodiscard]] Event judge(const Context& c, double aperture_mm, Refusal& refusal) const;

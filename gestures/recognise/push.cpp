@@ -72,7 +72,7 @@ void PushMachine::update(const Context& c) {
     handle(c, *thrust_.refusal.why == '\0' ? Event::thrust : Event::moving, thrust_.refusal);
 }
 
-void PushMachine::drop(const Context& c, const char* why) {
+void PushMachine::drop(const Context& c, CancelReason /*reason*/, const char* why) {
     not_before_ = c.sensor;
     if (state_ != State::waiting) {
         handle(c, Event::dropped, {why, 0.0, 0.0});

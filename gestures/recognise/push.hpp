@@ -11,10 +11,16 @@ namespace xtrack::recognise {
 /// One push machine a hand. The diagram is in docs/gestures/push.md and in push.cpp.
 class PushMachine {
  public:
+    static constexpr Rank kRank = Rank::stroke;
+    [[nodiscard]] static bool wanted(const GestureSettings& s) noexcept { return s.push; }
+    [[nodiscard]] bool holds() const noexcept { return false; }
+    [[nodiscard]] static bool sends(const GestureSettings& s) noexcept { return wanted(s); }
+
     /// A new sample is in the history.
     void update(const Context& c);
     /// The hand was lost, came to the border, or another gesture took it.
-    void drop(const Context& c, const char* why);
+    void drop(const Context& c, CancelReason reason, const char* why);
+    void finish(const Context& /*c*/) {}
 
  private:
     enum class State { waiting, recovering };

@@ -5,12 +5,7 @@
 #include <array>
 #include <utility>
 
-#include "gestures/recognise/context.hpp"
-#include "gestures/recognise/pinch.hpp"
-#include "gestures/recognise/presence.hpp"
-#include "gestures/recognise/push.hpp"
-#include "gestures/recognise/swipe.hpp"
-#include "gestures/recognise/wave.hpp"
+#include "gestures/recognise/hand_slot.hpp"
 
 namespace xtrack {
 
@@ -19,29 +14,12 @@ namespace {
 using recognise::Context;
 using recognise::from_ms;
 using recognise::Gate;
-using recognise::MotionHistory;
+using recognise::HandSlot;
 using recognise::Outbox;
-using recognise::PinchMachine;
 using recognise::Presence;
-using recognise::PushMachine;
-using recognise::SwipeMachine;
 using recognise::TransitionLog;
-using recognise::WaveMachine;
 
-/// A hand and its machines.
-struct Slot {
-    bool used = false;
-    bool seen_now = false;
-    Hand hand;  ///< as last seen
-    Presence presence;
-    MotionHistory history;
-    SwipeMachine swipe;
-    PushMachine push;
-    PinchMachine pinch;
-    WaveMachine wave;
-};
-
-// Two hands that are seen, and two more that were lost a moment ago and may come back.
+// Hands that are seen, and as many that were lost a moment ago and may come back.
 constexpr std::size_t kSlots = 2 * kMaxHands;
 
 bool usable(const Hand& hand, const GestureSettings& s) {
@@ -61,27 +39,24 @@ const char* to_string(RecogniseStatus s) noexcept {
 }
 
 struct GestureRecogniser::Impl {
-    explicit Impl(const GestureSettings& s)
-        : settings(s),
-          times{from_ms(s.hand_valid_ms), from_ms(s.entry_lockout_ms), from_ms(s.lost_freeze_ms),
-                from_ms(s.gone_ms)} {}
+    explicit Impl(const GestureSettings& s) : settings(s) {}
 
     GestureSettings settings;
-    Presence::Times times;
-    std::array<Slot, kSlots> slots;
-    Outbox out;
+    std::array<HandSlot, kSlots> slots;
+    Outbox out{settings};
     TransitionLog log;
     RecogniseStatus status = RecogniseStatus::ok;
     bool started = false;
+    bool paused = false;
     Stamp last_stamp;
     int next_gesture_id = 1;
 
-    Context context(const Slot& slot, Stamp sensor, Stamp emit, Gate gate = Gate::open) {
+    Context context(const HandSlot& slot, Stamp sensor, Stamp emit, Gate gate = Gate::open) {
         return {settings, slot.history, slot.hand,       sensor, emit,
                 gate,     false,        next_gesture_id, out,    log};
     }
 
-    void send_hand(const Slot& slot, EventPhase phase, Stamp sensor, Stamp emit) {
+    void send_hand(const HandSlot& slot, EventPhase phase, Stamp sensor, Stamp emit) {
         GestureEvent e = event_of(context(slot, sensor, emit), GestureType::hand, phase);
         if (phase == EventPhase::begin) {
             e.progress = 1.0F;
@@ -90,7 +65,7 @@ struct GestureRecogniser::Impl {
     }
 
     /// What a change of presence means for the gestures of the hand.
-    void apply(Slot& slot, const Presence::Step& step, Stamp sensor, Stamp emit) {
+    void apply(HandSlot& slot, const Presence::Step& step, Stamp sensor, Stamp emit) {
         if (step.before == step.after && step.possible) {
             return;
         }
@@ -112,18 +87,20 @@ struct GestureRecogniser::Impl {
         }
     }
 
-    void cancel_all(Slot& slot, CancelReason reason, const char* why, Stamp sensor, Stamp emit) {
-        const Context c = context(slot, sensor, emit);
-        slot.pinch.drop(c, reason);
-        slot.swipe.drop(c, why);
-        slot.push.drop(c, why);
-        slot.wave.drop(c, why);
+    void cancel_all(HandSlot& slot, CancelReason reason, const char* why, Stamp sensor,
+                    Stamp emit) {
+        slot.drop(context(slot, sensor, emit), reason, why);
+    }
+
+    [[nodiscard]] Presence::Times times() const {
+        return {from_ms(settings.hand_valid_ms), from_ms(settings.entry_lockout_ms),
+                from_ms(settings.lost_freeze_ms), from_ms(settings.gone_ms)};
     }
 
     /// A long gap brings several changes at once: frozen, lost, gone.
-    void pass_time(Slot& slot, Stamp now, Stamp sensor, Stamp emit) {
+    void pass_time(HandSlot& slot, Stamp now, Stamp sensor, Stamp emit) {
         while (slot.used) {
-            const Presence::Step step = slot.presence.pass(times, now);
+            const Presence::Step step = slot.presence.pass(times(), now);
             if (step.before == step.after) {
                 return;
             }
@@ -131,8 +108,8 @@ struct GestureRecogniser::Impl {
         }
     }
 
-    Slot* slot_of(int id) {
-        for (Slot& slot : slots) {
+    HandSlot* slot_of(int id) {
+        for (HandSlot& slot : slots) {
             if (slot.used && slot.hand.id == id) {
                 return &slot;
             }
@@ -140,9 +117,9 @@ struct GestureRecogniser::Impl {
         return nullptr;
     }
 
-    Slot& new_slot(const Hand& hand, Stamp now, bool in_view) {
-        Slot* free = slots.data();
-        for (Slot& slot : slots) {
+    HandSlot& new_slot(const Hand& hand, Stamp now, bool in_view) {
+        HandSlot* free = slots.data();
+        for (HandSlot& slot : slots) {
             if (!slot.used) {
                 free = &slot;
                 break;
@@ -157,45 +134,21 @@ struct GestureRecogniser::Impl {
                 send_hand(*free, EventPhase::end, now, now);
             }
         }
-        free->used = true;
-        free->hand = hand;
-        free->history.clear();
-        free->swipe = {};
-        free->push = {};
-        free->pinch = {};
-        free->wave = {};
-        free->presence.appear(now, in_view);
+        free->begin(hand, now, in_view);
         return *free;
     }
 
-    void run_gestures(Slot& slot, Stamp now, Duration span) {
+    void run_gestures(HandSlot& slot, Stamp now, Duration span) {
         if (!slot.presence.followed() ||
             !slot.history.add(recognise::sample_of(slot.hand, now, span))) {
             return;
         }
-        const Gate gate = !slot.presence.may_act()   ? Gate::entering
+        const Gate gate = paused                     ? Gate::paused
+                          : !slot.presence.may_act() ? Gate::entering
                           : slot.hand.touches_border ? Gate::border
                                                      : Gate::open;
-        // Strongest first: what it takes, the others lose.
         Context c = context(slot, now, now, gate);
-        if (settings.pinch) {
-            slot.pinch.update(c);
-            c.taken = slot.pinch.active();
-        }
-        if (settings.wave) {
-            // A first stroke may become either; who has turned back twice does not swipe.
-            const std::size_t before = out.all().size();
-            slot.wave.update(c);
-            c.taken = c.taken || slot.wave.swings() || out.all().size() != before;
-        }
-        if (settings.swipe) {
-            const std::size_t before = out.all().size();
-            slot.swipe.update(c);
-            c.taken = c.taken || out.all().size() != before;
-        }
-        if (settings.push) {
-            slot.push.update(c);
-        }
+        slot.update(c);
     }
 };
 
@@ -211,6 +164,38 @@ Result<GestureRecogniser> GestureRecogniser::create(const GestureSettings& setti
         return valid.error();
     }
     return GestureRecogniser{std::make_unique<Impl>(settings)};
+}
+
+Result<std::span<const GestureEvent>> GestureRecogniser::set_settings(
+    const GestureSettings& settings) {
+    Impl& m = *impl_;
+    if (auto valid = validate(settings); !valid) {
+        return valid.error();
+    }
+    m.out.clear();
+    for (HandSlot& slot : m.slots) {
+        if (slot.used) {
+            slot.switch_off(m.context(slot, m.last_stamp, m.last_stamp), settings);
+        }
+    }
+    m.settings = settings;
+    return m.out.all();
+}
+
+const GestureSettings& GestureRecogniser::settings() const noexcept { return impl_->settings; }
+
+std::span<const GestureEvent> GestureRecogniser::pause(bool paused) {
+    Impl& m = *impl_;
+    m.out.clear();
+    if (paused && !m.paused) {
+        for (HandSlot& slot : m.slots) {
+            if (slot.used) {
+                m.cancel_all(slot, CancelReason::disengaged, "paused", m.last_stamp, m.last_stamp);
+            }
+        }
+    }
+    m.paused = paused;
+    return m.out.all();
 }
 
 std::span<const GestureEvent> GestureRecogniser::push(const HandFrame& frame) {
@@ -229,7 +214,7 @@ std::span<const GestureEvent> GestureRecogniser::push(const HandFrame& frame) {
     m.started = true;
     m.last_stamp = now;
 
-    for (Slot& slot : m.slots) {
+    for (HandSlot& slot : m.slots) {
         slot.seen_now = false;
         m.pass_time(slot, now, now, now);
     }
@@ -237,7 +222,7 @@ std::span<const GestureEvent> GestureRecogniser::push(const HandFrame& frame) {
         if (!usable(hand, m.settings)) {
             continue;
         }
-        Slot* slot = m.slot_of(hand.id);
+        HandSlot* slot = m.slot_of(hand.id);
         if (slot != nullptr && slot->seen_now) {
             continue;  // two hands of one id: the first is believed
         }
@@ -249,7 +234,7 @@ std::span<const GestureEvent> GestureRecogniser::push(const HandFrame& frame) {
         }
         slot->seen_now = true;
     }
-    for (Slot& slot : m.slots) {
+    for (HandSlot& slot : m.slots) {
         if (slot.used && !slot.seen_now) {
             m.apply(slot, slot.presence.miss(now), now, now);
         }
@@ -269,7 +254,7 @@ std::span<const GestureEvent> GestureRecogniser::advance(Stamp now) {
     if (!m.started || now <= m.last_stamp) {
         return {};
     }
-    for (Slot& slot : m.slots) {
+    for (HandSlot& slot : m.slots) {
         m.pass_time(slot, now, m.last_stamp, now);
     }
     return m.out.all();
@@ -278,11 +263,11 @@ std::span<const GestureEvent> GestureRecogniser::advance(Stamp now) {
 std::span<const GestureEvent> GestureRecogniser::finish() {
     Impl& m = *impl_;
     m.out.clear();
-    for (Slot& slot : m.slots) {
+    for (HandSlot& slot : m.slots) {
         if (!slot.used) {
             continue;
         }
-        slot.pinch.finish(m.context(slot, m.last_stamp, m.last_stamp));
+        slot.finish(m.context(slot, m.last_stamp, m.last_stamp));
         if (slot.presence.announced()) {
             m.send_hand(slot, EventPhase::end, m.last_stamp, m.last_stamp);
         }
@@ -295,7 +280,7 @@ std::span<const GestureEvent> GestureRecogniser::finish() {
 std::span<const GestureEvent> GestureRecogniser::abandon(CancelReason reason) {
     Impl& m = *impl_;
     m.out.clear();
-    for (Slot& slot : m.slots) {
+    for (HandSlot& slot : m.slots) {
         if (!slot.used) {
             continue;
         }
@@ -310,7 +295,7 @@ std::span<const GestureEvent> GestureRecogniser::abandon(CancelReason reason) {
 }
 
 void GestureRecogniser::reset() noexcept {
-    for (Slot& slot : impl_->slots) {
+    for (HandSlot& slot : impl_->slots) {
         slot.used = false;
     }
     impl_->out.clear();

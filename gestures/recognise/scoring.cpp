@@ -2,6 +2,7 @@
 #include <xtrack/scoring.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -40,6 +41,19 @@ double poisson_mean(int k, double probability) {
     return 0.5 * (low + high);
 }
 
+/// What is labelled; whose session it is, and that a hand is there, are not.
+bool is_gesture(GestureType type) {
+    return type != GestureType::hand && type != GestureType::engage;
+}
+
+/// `_left` and the like.
+bool is_direction(std::string_view text) {
+    constexpr std::array kAll{Direction::left, Direction::right,     Direction::up,
+                              Direction::down, Direction::clockwise, Direction::counterclockwise};
+    return text.starts_with('_') &&
+           std::ranges::any_of(kAll, [&](Direction d) { return text.substr(1) == to_string(d); });
+}
+
 /// A gesture of a stream, from begin to its last event.
 struct Life {
     GestureEvent begin;
@@ -54,7 +68,7 @@ struct Life {
 std::vector<Life> lives_of(std::span<const GestureEvent> events) {
     std::vector<Life> lives;
     for (const GestureEvent& e : events) {
-        if (e.type == GestureType::hand) {
+        if (!is_gesture(e.type)) {
             continue;
         }
         if (e.phase == EventPhase::begin) {
@@ -167,23 +181,18 @@ void GestureScore::add(const GestureScore& o) {
     from_commit_ms.insert(from_commit_ms.end(), o.from_commit_ms.begin(), o.from_commit_ms.end());
 }
 
-GestureScorer::GestureScorer(const GestureSettings& settings) {
-    if (settings.swipe) {
-        scored_ = {"swipe", "swipe_left", "swipe_right", "swipe_up", "swipe_down"};
-    }
-    if (settings.push) {
-        scored_.emplace_back("push");
-    }
-    if (settings.pinch) {
-        scored_.emplace_back("pinch");
-    }
-    if (settings.wave) {
-        scored_.emplace_back("wave");
-    }
-}
+GestureScorer::GestureScorer(const GestureSettings& settings) : settings_(settings) {}
 
 bool GestureScorer::scored(std::string_view name) const {
-    return std::find(scored_.begin(), scored_.end(), name) != scored_.end();
+    for (std::size_t t = 0; t < kGestureTypeCount; ++t) {
+        const auto type = static_cast<GestureType>(t);
+        const std::string_view word = to_string(type);
+        if (is_gesture(type) && is_wanted(settings_, type) && name.starts_with(word) &&
+            (name.size() == word.size() || is_direction(name.substr(word.size())))) {
+            return true;
+        }
+    }
+    return false;
 }
 
 std::vector<JudgedEvent> GestureScorer::add(std::span<const GestureEvent> events,

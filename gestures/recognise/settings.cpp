@@ -6,74 +6,120 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
+#include <type_traits>
+
+#include "core/base/text.hpp"
 
 namespace xtrack {
 
 namespace {
 
-struct Range {
-    const char* name;
-    double GestureSettings::*value;
-    double min;
-    double max;
-};
+// One way to read and write every type of field.
+template <auto kMember>
+double get(const GestureSettings& settings) {
+    return static_cast<double>(settings.*kMember);
+}
+template <auto kMember>
+void set(GestureSettings& settings, double value) {
+    using Value = std::remove_reference_t<decltype(settings.*kMember)>;
+    settings.*kMember = static_cast<Value>(value);
+}
+
+template <auto kMember>
+constexpr GestureField toggle(const char* name) {
+    return {name, 0.0, 1.0, true, true, get<kMember>, set<kMember>};
+}
+template <auto kMember>
+constexpr GestureField number(const char* name, double least, double most) {
+    return {name, least, most, false, false, get<kMember>, set<kMember>};
+}
+template <auto kMember>
+constexpr GestureField whole(const char* name, double least, double most) {
+    return {name, least, most, false, true, get<kMember>, set<kMember>};
+}
 
 using S = GestureSettings;
-constexpr std::array kRanges{
-    Range{"hand_confidence", &S::hand_confidence, 0.0, 1.0},
-    Range{"hand_valid_ms", &S::hand_valid_ms, 0.0, 1000.0},
-    Range{"lost_freeze_ms", &S::lost_freeze_ms, 20.0, 1000.0},
-    Range{"gone_ms", &S::gone_ms, 120.0, 2000.0},
-    Range{"entry_lockout_ms", &S::entry_lockout_ms, 0.0, 2000.0},
-    Range{"velocity_window_ms", &S::velocity_window_ms, 60.0, 200.0},
-    Range{"swipe_speed_mmps", &S::swipe_speed_mmps, 100.0, 3000.0},
-    Range{"swipe_paddle_speed_mmps", &S::swipe_paddle_speed_mmps, 100.0, 3000.0},
-    Range{"swipe_length_mm", &S::swipe_length_mm, 40.0, 600.0},
-    Range{"swipe_dies_mmps", &S::swipe_dies_mmps, 50.0, 1000.0},
-    Range{"swipe_horizontal_deg", &S::swipe_horizontal_deg, 5.0, 44.0},
-    Range{"swipe_vertical_deg", &S::swipe_vertical_deg, 5.0, 44.0},
-    Range{"swipe_depth_deg", &S::swipe_depth_deg, 10.0, 60.0},
-    Range{"swipe_sideways_mm", &S::swipe_sideways_mm, 5.0, 200.0},
-    Range{"swipe_sideways_share", &S::swipe_sideways_share, 0.0, 1.0},
-    Range{"swipe_return_bar_ms", &S::swipe_return_bar_ms, 0.0, 2000.0},
-    Range{"swipe_rest_mmps", &S::swipe_rest_mmps, 10.0, 200.0},
-    Range{"swipe_return_memory_ms", &S::swipe_return_memory_ms, 0.0, 5000.0},
-    Range{"swipe_return_share", &S::swipe_return_share, 0.0, 1.0},
-    Range{"swipe_facing", &S::swipe_facing, 0.1, 1.0},
-    Range{"swipe_back_speed_mmps", &S::swipe_back_speed_mmps, 100.0, 3000.0},
-    Range{"swipe_back_length_mm", &S::swipe_back_length_mm, 40.0, 600.0},
-    Range{"swipe_carried_speed_mmps", &S::swipe_carried_speed_mmps, 100.0, 3000.0},
-    Range{"swipe_carried_length_mm", &S::swipe_carried_length_mm, 40.0, 600.0},
-    Range{"swipe_pointing_extension", &S::swipe_pointing_extension, 0.0, 1.0},
-    Range{"swipe_tip_share", &S::swipe_tip_share, 0.0, 1.0},
-    Range{"push_speed_mmps", &S::push_speed_mmps, 100.0, 3000.0},
-    Range{"push_window_ms", &S::push_window_ms, 100.0, 600.0},
-    Range{"push_cone_deg", &S::push_cone_deg, 5.0, 60.0},
-    Range{"push_turn_deg", &S::push_turn_deg, 0.0, 180.0},
-    Range{"push_stable_mmps", &S::push_stable_mmps, 20.0, 500.0},
-    Range{"push_stable_ms", &S::push_stable_ms, 0.0, 2000.0},
-    Range{"push_facing", &S::push_facing, 0.0, 1.0},
-    Range{"pinch_close_mm", &S::pinch_close_mm, 5.0, 40.0},
-    Range{"pinch_close_share", &S::pinch_close_share, 0.0, 0.3},
-    Range{"pinch_release_mm", &S::pinch_release_mm, 10.0, 80.0},
-    Range{"pinch_noise_mm", &S::pinch_noise_mm, 0.0, 20.0},
-    Range{"pinch_hold_ms", &S::pinch_hold_ms, 0.0, 1000.0},
-    Range{"pinch_open_mm", &S::pinch_open_mm, 20.0, 120.0},
-    Range{"pinch_approach_ms", &S::pinch_approach_ms, 50.0, 3000.0},
-    Range{"pinch_palm_mmps", &S::pinch_palm_mmps, 20.0, 1000.0},
-    Range{"pinch_blur_mm", &S::pinch_blur_mm, 2.0, 1000.0},
-    Range{"pinch_settle_ms", &S::pinch_settle_ms, 0.0, 5000.0},
-    Range{"pinch_others_fold", &S::pinch_others_fold, 0.05, 1.0},
-    Range{"pinch_thumb_free_mm", &S::pinch_thumb_free_mm, 0.0, 100.0},
-    Range{"pinch_bunch_mm", &S::pinch_bunch_mm, 0.0, 60.0},
-    Range{"pinch_bunch_extension", &S::pinch_bunch_extension, 0.0, 1.0},
-    Range{"pinch_index_share", &S::pinch_index_share, 0.0, 0.9},
-    Range{"wave_within_ms", &S::wave_within_ms, 300.0, 5000.0},
-    Range{"wave_stroke_mm", &S::wave_stroke_mm, 20.0, 300.0},
-    Range{"wave_off_axis_mm", &S::wave_off_axis_mm, 10.0, 200.0},
-    Range{"wave_rest_mmps", &S::wave_rest_mmps, 10.0, 200.0},
-    Range{"wave_rest_ms", &S::wave_rest_ms, 0.0, 2000.0},
+constexpr std::array kFields{
+    toggle<&S::swipe>("swipe"),
+    toggle<&S::push>("push"),
+    toggle<&S::pull>("pull"),
+    toggle<&S::pinch>("pinch"),
+    toggle<&S::double_pinch>("double_pinch"),
+    toggle<&S::grab>("grab"),
+    toggle<&S::tap>("tap"),
+    toggle<&S::double_tap>("double_tap"),
+    toggle<&S::circle>("circle"),
+    toggle<&S::wave>("wave"),
+    toggle<&S::raise>("raise"),
+    toggle<&S::dwell>("dwell"),
+    toggle<&S::press>("press"),
+    toggle<&S::touch>("touch"),
+    toggle<&S::drag>("drag"),
+    toggle<&S::open_palm>("open_palm"),
+    toggle<&S::fist>("fist"),
+    toggle<&S::point>("point"),
+    toggle<&S::victory>("victory"),
+    toggle<&S::thumb_up>("thumb_up"),
+    toggle<&S::thumb_down>("thumb_down"),
+    toggle<&S::two_hand_zoom>("two_hand_zoom"),
+    toggle<&S::two_hand_rotate>("two_hand_rotate"),
+    toggle<&S::engage>("engage"),
+    number<&S::hand_confidence>("hand_confidence", 0.0, 1.0),
+    number<&S::hand_valid_ms>("hand_valid_ms", 0.0, 1000.0),
+    number<&S::lost_freeze_ms>("lost_freeze_ms", 20.0, 1000.0),
+    number<&S::gone_ms>("gone_ms", 120.0, 2000.0),
+    number<&S::entry_lockout_ms>("entry_lockout_ms", 0.0, 2000.0),
+    number<&S::velocity_window_ms>("velocity_window_ms", 60.0, 200.0),
+    number<&S::swipe_speed_mmps>("swipe_speed_mmps", 100.0, 3000.0),
+    number<&S::swipe_paddle_speed_mmps>("swipe_paddle_speed_mmps", 100.0, 3000.0),
+    number<&S::swipe_length_mm>("swipe_length_mm", 40.0, 600.0),
+    number<&S::swipe_dies_mmps>("swipe_dies_mmps", 50.0, 1000.0),
+    number<&S::swipe_horizontal_deg>("swipe_horizontal_deg", 5.0, 44.0),
+    number<&S::swipe_vertical_deg>("swipe_vertical_deg", 5.0, 44.0),
+    number<&S::swipe_depth_deg>("swipe_depth_deg", 10.0, 60.0),
+    number<&S::swipe_sideways_mm>("swipe_sideways_mm", 5.0, 200.0),
+    number<&S::swipe_sideways_share>("swipe_sideways_share", 0.0, 1.0),
+    number<&S::swipe_return_bar_ms>("swipe_return_bar_ms", 0.0, 2000.0),
+    number<&S::swipe_rest_mmps>("swipe_rest_mmps", 10.0, 200.0),
+    number<&S::swipe_return_memory_ms>("swipe_return_memory_ms", 0.0, 5000.0),
+    number<&S::swipe_return_share>("swipe_return_share", 0.0, 1.0),
+    number<&S::swipe_facing>("swipe_facing", 0.1, 1.0),
+    number<&S::swipe_back_speed_mmps>("swipe_back_speed_mmps", 100.0, 3000.0),
+    number<&S::swipe_back_length_mm>("swipe_back_length_mm", 40.0, 600.0),
+    number<&S::swipe_carried_speed_mmps>("swipe_carried_speed_mmps", 100.0, 3000.0),
+    number<&S::swipe_carried_length_mm>("swipe_carried_length_mm", 40.0, 600.0),
+    number<&S::swipe_pointing_extension>("swipe_pointing_extension", 0.0, 1.0),
+    number<&S::swipe_tip_share>("swipe_tip_share", 0.0, 1.0),
+    number<&S::push_speed_mmps>("push_speed_mmps", 100.0, 3000.0),
+    number<&S::push_window_ms>("push_window_ms", 100.0, 600.0),
+    number<&S::push_cone_deg>("push_cone_deg", 5.0, 60.0),
+    number<&S::push_turn_deg>("push_turn_deg", 0.0, 180.0),
+    number<&S::push_stable_mmps>("push_stable_mmps", 20.0, 500.0),
+    number<&S::push_stable_ms>("push_stable_ms", 0.0, 2000.0),
+    number<&S::push_facing>("push_facing", 0.0, 1.0),
+    number<&S::pinch_close_mm>("pinch_close_mm", 5.0, 40.0),
+    number<&S::pinch_close_share>("pinch_close_share", 0.0, 0.3),
+    number<&S::pinch_release_mm>("pinch_release_mm", 10.0, 80.0),
+    number<&S::pinch_noise_mm>("pinch_noise_mm", 0.0, 20.0),
+    number<&S::pinch_hold_ms>("pinch_hold_ms", 0.0, 1000.0),
+    number<&S::pinch_open_mm>("pinch_open_mm", 20.0, 120.0),
+    number<&S::pinch_approach_ms>("pinch_approach_ms", 50.0, 3000.0),
+    number<&S::pinch_palm_mmps>("pinch_palm_mmps", 20.0, 1000.0),
+    number<&S::pinch_blur_mm>("pinch_blur_mm", 2.0, 1000.0),
+    number<&S::pinch_settle_ms>("pinch_settle_ms", 0.0, 5000.0),
+    number<&S::pinch_others_fold>("pinch_others_fold", 0.05, 1.0),
+    number<&S::pinch_thumb_free_mm>("pinch_thumb_free_mm", 0.0, 100.0),
+    number<&S::pinch_bunch_mm>("pinch_bunch_mm", 0.0, 60.0),
+    number<&S::pinch_bunch_extension>("pinch_bunch_extension", 0.0, 1.0),
+    number<&S::pinch_index_share>("pinch_index_share", 0.0, 0.9),
+    whole<&S::wave_turns>("wave_turns", 2.0, 12.0),
+    number<&S::wave_within_ms>("wave_within_ms", 300.0, 5000.0),
+    number<&S::wave_stroke_mm>("wave_stroke_mm", 20.0, 300.0),
+    number<&S::wave_off_axis_mm>("wave_off_axis_mm", 10.0, 200.0),
+    number<&S::wave_rest_mmps>("wave_rest_mmps", 10.0, 200.0),
+    number<&S::wave_rest_ms>("wave_rest_ms", 0.0, 2000.0),
 };
 
 std::string text(double value) {
@@ -88,6 +134,26 @@ std::string text(double value) {
 
 Error refuse(const std::string& what) {
     return {ErrorCode::invalid_argument, "gesture settings: " + what};
+}
+
+bool allowed(const GestureField& field, double value) {
+    // False for NaN.
+    return value >= field.least && value <= field.most &&
+           (!field.whole || value == std::floor(value));
+}
+
+Error refusal(const GestureField& field, const std::string& value) {
+    const std::string range =
+        field.is_switch ? "on or off" : text(field.least) + " to " + text(field.most);
+    return refuse(std::string{field.name} + " is " + value + "; give " +
+                  (field.whole && !field.is_switch ? "a whole number from " : "") + range);
+}
+
+std::optional<double> value_of(const GestureField& field, std::string_view text) {
+    if (field.is_switch && (text == "on" || text == "off")) {
+        return text == "on" ? 1.0 : 0.0;
+    }
+    return base::parse_double(text);
 }
 
 }  // namespace
@@ -120,19 +186,58 @@ GestureDemands demands_of(const GestureSettings& settings) noexcept {
     return demands;
 }
 
-Result<void> validate(const GestureSettings& s) {
-    for (const Range& r : kRanges) {
-        const double value = s.*r.value;
-        if (!(value >= r.min && value <= r.max)) {
-            return refuse(std::string{r.name} + " is " + text(value) + "; give " + text(r.min) +
-                          " to " + text(r.max));
-        }
+std::span<const GestureField> gesture_fields() noexcept { return kFields; }
+
+Result<void> set_field(GestureSettings& settings, std::string_view name, std::string_view text) {
+    const auto* field =
+        std::ranges::find_if(kFields, [&](const GestureField& one) { return name == one.name; });
+    if (field == kFields.end()) {
+        return refuse(base::quoted(name) + " is none of them");
     }
-    constexpr int kLeastTurns = 2;
-    constexpr int kMostTurns = 12;
-    if (s.wave_turns < kLeastTurns || s.wave_turns > kMostTurns) {
-        return refuse("wave_turns is " + text(s.wave_turns) + "; give " + text(kLeastTurns) +
-                      " to " + text(kMostTurns));
+    const std::optional<double> value = value_of(*field, text);
+    if (!value || !allowed(*field, *value)) {
+        return refusal(*field, base::quoted(text));
+    }
+    field->set(settings, *value);
+    return {};
+}
+
+bool is_wanted(const GestureSettings& s, GestureType type) noexcept {
+    switch (type) {
+        case GestureType::hand: return true;
+        case GestureType::engage: return s.engage;
+        case GestureType::swipe: return s.swipe;
+        case GestureType::push: return s.push;
+        case GestureType::pull: return s.pull;
+        case GestureType::pinch: return s.pinch;
+        case GestureType::double_pinch: return s.double_pinch;
+        case GestureType::grab: return s.grab;
+        case GestureType::tap: return s.tap;
+        case GestureType::double_tap: return s.double_tap;
+        case GestureType::circle: return s.circle;
+        case GestureType::wave: return s.wave;
+        case GestureType::raise: return s.raise;
+        case GestureType::dwell: return s.dwell;
+        case GestureType::press: return s.press;
+        case GestureType::touch: return s.touch;
+        case GestureType::drag: return s.drag;
+        case GestureType::open_palm: return s.open_palm;
+        case GestureType::fist: return s.fist;
+        case GestureType::point: return s.point;
+        case GestureType::victory: return s.victory;
+        case GestureType::thumb_up: return s.thumb_up;
+        case GestureType::thumb_down: return s.thumb_down;
+        case GestureType::two_hand_zoom: return s.two_hand_zoom;
+        case GestureType::two_hand_rotate: return s.two_hand_rotate;
+    }
+    return false;
+}
+
+Result<void> validate(const GestureSettings& s) {
+    for (const GestureField& field : kFields) {
+        if (!allowed(field, field.get(s))) {
+            return refusal(field, text(field.get(s)));
+        }
     }
     // Less hysteresis than three sigma chatters at the edge.
     const double release_min_mm = s.pinch_close_mm + 3.0 * s.pinch_noise_mm;

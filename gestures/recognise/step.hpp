@@ -47,4 +47,22 @@ class Reporter {
     const char* last_why_ = "";
 };
 
+/// What all machines of one hand have: `Self` gives `next(c, event)`, which asks the function of
+/// the state that the machine is in, and `name()` of states and events.
+template <typename Self, typename State, typename Event>
+class Machine {
+ protected:
+    Machine(const char* name, State first) : state_(first), reporter_(name) {}
+
+    void handle(const Context& c, Event event, const Refusal& refusal = {}) {
+        reporter_.report(c, step(state_, event, static_cast<Self*>(this)->next(c, event)), refusal,
+                         [](auto of) { return Self::name(of); });
+    }
+    [[nodiscard]] State state() const noexcept { return state_; }
+
+ private:
+    State state_;
+    Reporter reporter_;
+};
+
 }  // namespace xtrack::recognise

@@ -42,7 +42,9 @@ Vec3f axis_of(Direction d) {
         case Direction::right: return {1.0F, 0.0F, 0.0F};
         case Direction::up: return {0.0F, 1.0F, 0.0F};
         case Direction::down: return {0.0F, -1.0F, 0.0F};
-        case Direction::none: break;
+        case Direction::none:
+        case Direction::clockwise:
+        case Direction::counterclockwise: break;
     }
     return Vec3f::Zero();
 }
@@ -116,9 +118,7 @@ void SwipeMachine::update(const Context& c) {
         coming_mmps_ = Vec3f::Zero();
     }
     if (c.gate != Gate::open || c.taken) {
-        drop(c, c.taken                    ? "another gesture has the hand"
-                : c.gate == Gate::entering ? "the hand enters"
-                                           : "the hand touches the border");
+        drop(c, CancelReason::none, c.taken ? "another gesture has the hand" : why(c.gate));
         return;
     }
     Refusal refusal;
@@ -131,7 +131,7 @@ void SwipeMachine::update(const Context& c) {
     }
 }
 
-void SwipeMachine::drop(const Context& c, const char* why) {
+void SwipeMachine::drop(const Context& c, CancelReason /*reason*/, const char* why) {
     drop_until_ = c.sensor;
     if (state_ != State::waiting) {
         handle(c, Event::dropped, {why, 0.0, 0.0});

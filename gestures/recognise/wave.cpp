@@ -135,7 +135,7 @@ void WaveMachine::update(const Context& c) {
         return;
     }
     if (c.gate != Gate::open || c.taken) {
-        drop(c, c.taken ? "another gesture" : "the hand may not act");
+        drop(c, CancelReason::none, c.taken ? "another gesture has the hand" : why(c.gate));
         return;
     }
     Refusal refusal;
@@ -166,7 +166,7 @@ void WaveMachine::update(const Context& c) {
     handle(c, turned ? Event::turned : Event::moving, refusal);
 }
 
-void WaveMachine::drop(const Context& c, const char* why) {
+void WaveMachine::drop(const Context& c, CancelReason /*reason*/, const char* why) {
     forget();
     if (state_ != State::waiting) {
         handle(c, Event::dropped, {why, 0.0, 0.0});

@@ -13,10 +13,16 @@ namespace xtrack::recognise {
 /// One wave machine a hand. The diagram is in docs/gestures/wave.md and in wave.cpp.
 class WaveMachine {
  public:
+    static constexpr Rank kRank = Rank::rhythm;
+    [[nodiscard]] static bool wanted(const GestureSettings& s) noexcept { return s.wave; }
+    [[nodiscard]] bool holds() const noexcept { return false; }
+    [[nodiscard]] static bool sends(const GestureSettings& s) noexcept { return wanted(s); }
+
     /// A new sample is in the history.
     void update(const Context& c);
     /// The hand was lost, came to the border, or another gesture took it.
-    void drop(const Context& c, const char* why);
+    void drop(const Context& c, CancelReason reason, const char* why);
+    void finish(const Context& /*c*/) {}
     /// It went to and fro: its strokes are no swipes. One turn is a wind-up's as well.
     [[nodiscard]] bool swings() const noexcept {
         return state_ == State::recovering || count_ >= kSwings;

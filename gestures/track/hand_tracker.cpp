@@ -156,7 +156,7 @@ Result<HandTracker> HandTracker::create(const Rig& rig, Size size,
         }
     }
     if (settings.max_hands < 1 || settings.max_hands > static_cast<int>(kMaxHands)) {
-        return bad("hand tracker: max_hands must be 1 or 2");
+        return bad("hand tracker: max_hands must be 1 to " + std::to_string(kMaxHands));
     }
     if (!(settings.palm_radius_min_mm > 0.0) ||
         !(settings.palm_radius_max_mm > settings.palm_radius_min_mm)) {

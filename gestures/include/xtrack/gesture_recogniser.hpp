@@ -57,6 +57,19 @@ class GestureRecogniser {
     GestureRecogniser& operator=(GestureRecogniser&&) noexcept;
     ~GestureRecogniser();
 
+    /// Other settings from the next frame on; hands and what is active stay.
+    /// @return what was active and is switched off, cancelled; `emit` is the last frame's stamp
+    /// @errors invalid_argument: a setting out of its range; nothing changed
+    /// @ownership borrowed until the next call of any member
+    [[nodiscard]] Result<std::span<const GestureEvent>> set_settings(
+        const GestureSettings& settings);
+    [[nodiscard]] const GestureSettings& settings() const noexcept;
+
+    /// While paused hands come and go, and no gesture begins.
+    /// @return what was active, cancelled with `disengaged`
+    /// @ownership borrowed until the next call of any member
+    std::span<const GestureEvent> pause(bool paused);
+
     /// Takes the hands of one moment.
     /// @param frame interaction frame, mm; stamps must not decrease. Hands with positions that are
     ///        not finite count as not seen.

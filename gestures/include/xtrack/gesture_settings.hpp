@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <xtrack/gesture_event.hpp>
 #include <xtrack/result.hpp>
 
 namespace xtrack {
@@ -9,10 +14,32 @@ namespace xtrack {
 /// source. Lengths are of a real hand in mm, so they do not depend on the camera.
 /// @since 0.1
 struct GestureSettings {
+    // --- what is recognised ----------------------------------------------------------------------
     bool swipe = true;
     bool push = true;
+    bool pull = false;
     bool pinch = true;
+    bool double_pinch = false;
+    bool grab = false;
+    bool tap = false;
+    bool double_tap = false;
+    bool circle = false;
     bool wave = false;  ///< off: who beckons or gesticulates waves too
+    bool raise = false;
+    bool dwell = false;
+    bool press = false;
+    bool touch = false;
+    bool drag = false;
+    bool open_palm = false;
+    bool fist = false;
+    bool point = false;
+    bool victory = false;
+    bool thumb_up = false;
+    bool thumb_down = false;
+    bool two_hand_zoom = false;
+    bool two_hand_rotate = false;
+    /// Only the hand that took the session is listened to, and a second one of the same body.
+    bool engage = false;
 
     // --- the hand itself -------------------------------------------------------------------------
     /// Below it a hand counts as not seen. 0..1. MediaPipe's and OpenXR runtimes' usual line.
@@ -152,6 +179,40 @@ struct GestureDemands {
 /// @thread any
 /// @since 0.1
 [[nodiscard]] GestureDemands demands_of(const GestureSettings& settings) noexcept;
+
+/// Whether a type of event is switched on; hands always are.
+/// @thread any
+/// @since 0.1
+[[nodiscard]] bool is_wanted(const GestureSettings& settings, GestureType type) noexcept;
+
+/// One field of GestureSettings, for programs that list, set and sweep them by name. A switch takes
+/// 0 and 1.
+/// @since 0.1
+struct GestureField {
+    const char* name = "";  ///< as in the struct; its unit is its last word
+    double least = 0.0;
+    double most = 1.0;
+    bool is_switch = false;
+    bool whole = false;  ///< whole numbers only
+    double (*get)(const GestureSettings&) = nullptr;
+    void (*set)(GestureSettings&, double) = nullptr;
+
+    [[nodiscard]] double standard() const { return get(GestureSettings{}); }
+};
+
+/// All fields, in the struct's order.
+/// @thread any @ownership static
+/// @since 0.1
+[[nodiscard]] std::span<const GestureField> gesture_fields() noexcept;
+
+/// Sets a field by its name; nothing changes on an Error. What it may be together with others,
+/// validate() says.
+/// @param text a number with a point; of a switch on, off, 1 or 0
+/// @return invalid_argument that names the field and what it takes
+/// @thread any
+/// @since 0.1
+[[nodiscard]] Result<void> set_field(GestureSettings& settings, std::string_view name,
+                                     std::string_view text);
 
 /// Checks every range and the relations between them.
 /// @return invalid_argument that names the setting, its value and its range

@@ -102,7 +102,7 @@ struct Hand {
 };
 
 /// Hands that are followed at once.
-inline constexpr std::size_t kMaxHands = 2;
+inline constexpr std::size_t kMaxHands = 4;
 
 /// All hands of one moment; none is a frame without a hand.
 /// @since 0.1

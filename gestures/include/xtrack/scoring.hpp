@@ -147,7 +147,7 @@ class GestureScorer {
     }
 
  private:
-    std::vector<std::string> scored_;
+    GestureSettings settings_;
     std::map<std::string, GestureScore> gestures_;
     int unlabelled_events_ = 0;
     double unlabelled_hours_ = 0.0;

@@ -8,6 +8,7 @@
 
 #include <xtrack/depth_decoder.hpp>
 #include <xtrack/gesture_event.hpp>
+#include <xtrack/gesture_recogniser.hpp>
 #include <xtrack/gesture_settings.hpp>
 #include <xtrack/hand.hpp>
 #include <xtrack/hand_source.hpp>
@@ -199,6 +200,20 @@ class Session {
     [[nodiscard]] DecodeSettings decode_settings() const noexcept;
     /// Whether a setting means anything to the decoder at hand. @thread as set_decode_settings()
     [[nodiscard]] bool uses(const DecodeField& field) const noexcept;
+    /// Other gestures and thresholds, from the next item on; what is active and is switched off is
+    /// cancelled. @thread any
+    /// @errors invalid_argument: a setting out of its range; unsupported: the session has no true
+    ///         millimetres (metric()) and the gesture needs them; nothing changed
+    Result<void> set_gesture_settings(const GestureSettings& settings);
+    /// Those that were set last. @thread any
+    [[nodiscard]] GestureSettings gesture_settings() const;
+    /// While paused hands come and go and no gesture begins; what is active is cancelled.
+    /// @thread any
+    void pause(bool paused);
+    /// Hears every transition of the gestures' state machines and every reason not to; empty turns
+    /// it off. @thread that of run() or step(), and called there; after start() a callback alone
+    void set_trace(GestureRecogniser::TraceSink sink);
+
     /// Takes the last decode for the empty scene (PaperDecoder::learn_background()).
     /// @thread that of run() or step(); after start() a callback alone
     /// @errors unsupported: the session has no PaperDecoder, or nothing was decoded yet; io

@@ -9,7 +9,7 @@ namespace xtrack {
 /// between 0.2 and 1.5 m; sizes leave 20 % for a depth scale that is only estimated.
 /// @since 0.1
 struct TrackerSettings {
-    int max_hands = 2;  ///< 1 or 2
+    int max_hands = 2;  ///< 1 to kMaxHands
 
     /// Depth that is looked at, mm. 0: the rig's working volume, or 150..1500 where it has none.
     double near_mm = 0.0;

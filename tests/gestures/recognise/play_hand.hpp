@@ -190,8 +190,7 @@ class Stage {
     [[nodiscard]] std::vector<std::string> story() const {
         std::vector<std::string> lines;
         for (const GestureEvent& e : events) {
-            const bool one_shot = e.type == GestureType::swipe || e.type == GestureType::push ||
-                                  e.type == GestureType::wave;
+            const bool one_shot = is_one_shot(e.type);
             if (e.type == GestureType::hand || e.phase == EventPhase::update ||
                 (one_shot && e.phase == EventPhase::begin)) {
                 continue;

@@ -288,7 +288,7 @@ TEST(HandTracker, WrongInputIsRefused) {
     EXPECT_FALSE(HandTracker::create(scene.rig, {10, 10}).ok());
     EXPECT_FALSE(HandTracker::create(Rig{}, {640, 480}).ok());
     TrackerSettings settings;
-    settings.max_hands = 3;
+    settings.max_hands = static_cast<int>(kMaxHands) + 1;
     EXPECT_FALSE(HandTracker::create(scene.rig, {640, 480}, settings).ok());
 }
 
