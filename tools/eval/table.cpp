@@ -5,22 +5,11 @@
 #include <fmt/format.h>
 
 #include "tools/eval/evaluation.hpp"
+#include "tools/eval/figures.hpp"
 
 namespace xtrack::tools {
 
 namespace {
-
-std::string text(const Estimate& e) {
-    return fmt::format("{:5.2f} [{:4.2f}, {:4.2f}]", e.value, e.low, e.high);
-}
-
-std::string text(const std::vector<double>& ms) {
-    return ms.empty() ? "-"
-                      : fmt::format("{:.0f} / {:.0f}", percentile(ms, 0.50), percentile(ms, 0.95));
-}
-
-/// A share of nothing is no figure.
-std::string share(const Estimate& e, int of) { return of > 0 ? text(e) : "-"; }
 
 void print_events(const EvaluatedRecording& r) {
     fmt::print("{} ({:.1f} s, {} labels)\n", r.name, r.seconds, r.labels.size());
@@ -43,8 +32,7 @@ void print_recordings(const std::vector<EvaluatedRecording>& recordings) {
         const GestureScore s = r.scorer.all();
         fmt::print("{:<{}} {:>8.1f} {:>3}/{:<3} {:>5} {:>5} {:>5} {:>5} {:>13} {:>12}\n", r.name,
                    width, r.seconds, s.correct, s.labelled, s.false_events(), s.wrong_hand,
-                   s.cancelled, s.labelled > 0 ? fmt::format("{:.2f}", s.jaccard()) : "-",
-                   text(s.from_commit_ms), text(s.from_end_ms));
+                   s.cancelled, jaccard_text(s), to_text(s.from_commit_ms), to_text(s.from_end_ms));
     }
 }
 
@@ -52,11 +40,11 @@ void print_gesture(const std::string& name, const GestureScore& s) {
     fmt::print(
         "{:<12} {:>3}/{:<3} {:>19} {:>5} {:>19} {:>19} {:>5} {:>5} {:>12} {:>12} {:>13} "
         "{:>13}\n",
-        name, s.correct, s.labelled, share(s.detection(), s.labelled), s.false_events(),
-        share(s.false_per_label(), s.labelled),
-        share(s.false_per_label_without_overlaps(), s.labelled),
-        s.labelled > 0 ? fmt::format("{:.2f}", s.jaccard()) : "-", s.cancelled,
-        text(s.from_onset_ms), text(s.from_start_ms), text(s.from_commit_ms), text(s.from_end_ms));
+        name, s.correct, s.labelled, to_text(s.detection(), s.labelled), s.false_events(),
+        to_text(s.false_per_label(), s.labelled),
+        to_text(s.false_per_label_without_overlaps(), s.labelled), jaccard_text(s), s.cancelled,
+        to_text(s.from_onset_ms), to_text(s.from_start_ms), to_text(s.from_commit_ms),
+        to_text(s.from_end_ms));
 }
 
 void print_gestures(const GestureScorer& scorer) {
@@ -72,9 +60,10 @@ void print_gestures(const GestureScorer& scorer) {
     fmt::print(
         "latencies are p50 / p95 of the deciding frame, from the event's own onset, the label's "
         "start, the label's commit and the label's end\n");
-    fmt::print("pinches during x_ok: {}   wrong hand: {}\n", all.allowed, text(all.wrong_hands()));
+    fmt::print("pinches during x_ok: {}   wrong hand: {}\n", all.allowed,
+               to_text(all.wrong_hands(), all.correct + all.wrong_hand));
     fmt::print("cancelled: {}, of these during their label: {}; right cancels: {}", all.cancelled,
-               all.cancelled_in_label, share(all.right_cancels(), all.cancelled));
+               all.cancelled_in_label, to_text(all.right_cancels(), all.cancelled));
     if (all.without_reason + all.unclosed > 0) {
         fmt::print("; without a reason: {}, begun and never closed: {}", all.without_reason,
                    all.unclosed);
@@ -90,9 +79,9 @@ void print_gestures(const GestureScorer& scorer) {
 
 void print_still(const EvaluatedStills& s, std::size_t width) {
     fmt::print("{:<{}} {:>3}/{:<3} {:>19} {:>3}/{:<3} {:>19} {:>3}/{:<3} {:>19} {:>19}\n", s.name,
-               width, s.found, s.with_hand, share(s.found_share(), s.with_hand), s.none_found,
-               s.without_hand, share(s.none_share(), s.without_hand), s.count_right, s.counted,
-               share(s.right_share(), s.counted), share(s.near_share(), s.counted));
+               width, s.found, s.with_hand, to_text(s.found_share(), s.with_hand), s.none_found,
+               s.without_hand, to_text(s.none_share(), s.without_hand), s.count_right, s.counted,
+               to_text(s.right_share(), s.counted), to_text(s.near_share(), s.counted));
 }
 
 void print_stills(const std::vector<EvaluatedStills>& stills) {
