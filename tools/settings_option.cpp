@@ -56,20 +56,50 @@ void add_settings_option(CLI::App& command, std::vector<std::string>& changes,
         ->allow_extra_args(false);
 }
 
-Result<void> apply_settings(const std::vector<std::string>& changes, DecodeSettings& settings) {
+namespace {
+
+template <typename Settings>
+Result<void> apply(const std::vector<std::string>& changes, const char* example,
+                   Settings& settings) {
     for (const std::string& change : changes) {
         const std::size_t equals = change.find('=');
         if (equals == std::string::npos) {
             return Error{ErrorCode::invalid_argument,
-                         base::quoted(change) + ": give NAME=VALUE, such as min_modulation=8"};
+                         base::quoted(change) + ": give NAME=VALUE, such as " + example};
         }
         if (auto set = set_field(settings, std::string_view(change).substr(0, equals),
                                  std::string_view(change).substr(equals + 1));
             !set) {
-            return Error{set.error().code, set.error().message};
+            return set;
         }
     }
     return {};
+}
+
+}  // namespace
+
+Result<void> apply_settings(const std::vector<std::string>& changes, DecodeSettings& settings) {
+    return apply(changes, "min_modulation=8", settings);
+}
+
+void add_gesture_settings_option(CLI::App& command, std::vector<std::string>& changes) {
+    std::string text = "Changes a setting of the gestures:";
+    for (const GestureField& field : gesture_fields()) {
+        if (!field.is_switch) {  // --gestures chooses
+            text +=
+                fmt::format("\n{} ({} to {}; else {})", field.name, base::number_text(field.least),
+                            base::number_text(field.most), base::number_text(field.standard()));
+        }
+    }
+    command.add_option("--set", changes, text)->type_name("NAME=VALUE")->allow_extra_args(false);
+}
+
+Result<void> apply_gesture_settings(const std::vector<std::string>& changes,
+                                    GestureSettings& settings) {
+    if (auto set = apply(changes, "swipe_speed_mmps=350", settings); !set) {
+        return set;
+    }
+    return validate(settings);
 }
 
 Result<void> check_settings(const std::vector<std::string>& changes, DecodeMethod method,

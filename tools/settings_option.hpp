@@ -29,4 +29,11 @@ void add_settings_option(CLI::App& command, std::vector<std::string>& changes,
                                           DecodeMethod method,
                                           const std::function<bool(const DecodeField&)>& uses);
 
+/// `--set NAME=VALUE` of gestures; its help lists every threshold with range and standard value.
+void add_gesture_settings_option(CLI::App& command, std::vector<std::string>& changes);
+
+/// @errors invalid_argument: as apply_settings(), and values that contradict each other
+[[nodiscard]] Result<void> apply_gesture_settings(const std::vector<std::string>& changes,
+                                                  GestureSettings& settings);
+
 }  // namespace xtrack::tools

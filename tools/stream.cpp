@@ -123,13 +123,22 @@ Result<void> choose_gestures(const std::optional<std::string>& list, GestureSett
     return {};
 }
 
-void choose_decoding(const StreamOptions& stream, SessionOptions& options) {
+Result<SessionOptions> session_options(const StreamOptions& stream, Pace pace) {
+    SessionOptions options;
+    options.pace = pace;
+    if (const auto chosen = choose_gestures(stream.gestures, options.gestures); !chosen) {
+        return chosen.error();
+    }
     options.use_rig = !stream.without_rig;
     if (stream.mode) {
         options.method = DecodeMethod::paper;
         options.decode.motion = MotionHandling::off;  // each image for itself, as in the paper
         options.decode.mode = *stream.mode;
     }
+    if (const auto set = apply_settings(stream.changes, options.decode); !set) {
+        return Error{set.error().code, "--set " + set.error().message};
+    }
+    return options;
 }
 
 namespace {

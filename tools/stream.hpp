@@ -34,8 +34,9 @@ void add_stream_options(CLI::App& command, StreamOptions& options);
 [[nodiscard]] Result<void> choose_gestures(const std::optional<std::string>& list,
                                            GestureSettings& settings);
 
-/// What `--mode` and `--without-rig` ask for, if they do.
-void choose_decoding(const StreamOptions& stream, SessionOptions& options);
+/// What the options ask of a session.
+/// @errors invalid_argument: a gesture or a setting that is none
+[[nodiscard]] Result<SessionOptions> session_options(const StreamOptions& stream, Pace pace);
 
 /// Whether the source allows what was asked for.
 /// @errors unsupported: a gesture that compares what is smaller than a hand, without a calibration;

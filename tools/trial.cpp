@@ -92,28 +92,10 @@ void append(std::vector<double>& to, const std::vector<double>& from) {
     to.insert(to.end(), from.begin(), from.end());
 }
 
-/// How long after the definition was fulfilled each found gesture was told.
-void measure_delay(TrialResult& result) {
-    for (const JudgedEvent& judged : result.events) {
-        if (judged.verdict != Verdict::correct) {
-            continue;
-        }
-        const std::string name = name_of(judged.event);
-        for (const GestureLabel& label : result.labels) {
-            if (label.gesture == name && label.commit && judged.event.sensor >= label.start &&
-                judged.event.sensor <= label.end + std::chrono::milliseconds(200)) {
-                result.after_commit_ms.push_back(to_seconds(judged.event.sensor - *label.commit) *
-                                                 1e3);
-            }
-        }
-    }
-}
-
 }  // namespace
 
 void TrialResult::add(const TrialResult& other) {
     score.add(other.score);
-    append(after_commit_ms, other.after_commit_ms);
     append(depth_rms_mm, other.depth_rms_mm);
     append(depth_off, other.depth_off);
     append(depth_missing, other.depth_missing);
@@ -175,7 +157,6 @@ Result<TrialResult> run_trial(const TrialOptions& options, const TrialSetup& set
     result.events = scorer.add(events, result.labels, length);
     result.score = scorer.all();
     result.statistics = session->statistics();
-    measure_delay(result);
     return result;
 }
 

@@ -29,10 +29,9 @@ struct TrialResult {
     GestureScore score;
     std::vector<JudgedEvent> events;
     std::vector<GestureLabel> labels;
-    std::vector<double> after_commit_ms;  ///< decision after the moment the definition is fulfilled
-    std::vector<double> depth_rms_mm;     ///< a measured frame: hand, pixels within 15 mm
-    std::vector<double> depth_off;        ///< share of the hand off by more
-    std::vector<double> depth_missing;    ///< share of the hand without depth
+    std::vector<double> depth_rms_mm;   ///< a measured frame: hand, pixels within 15 mm
+    std::vector<double> depth_off;      ///< share of the hand off by more
+    std::vector<double> depth_missing;  ///< share of the hand without depth
     std::vector<double> palm_error_mm;
     SessionStatistics statistics;
 
