@@ -56,12 +56,14 @@ void add_settings_option(CLI::App& command, std::vector<std::string>& changes,
         ->allow_extra_args(false);
 }
 
-Result<void> apply_settings(const std::vector<std::string>& changes, DecodeSettings& settings) {
+namespace {
+
+Result<void> apply(const std::vector<std::string>& changes, const char* example, auto& settings) {
     for (const std::string& change : changes) {
         const std::size_t equals = change.find('=');
         if (equals == std::string::npos) {
             return Error{ErrorCode::invalid_argument,
-                         base::quoted(change) + ": give NAME=VALUE, such as min_modulation=8"};
+                         base::quoted(change) + ": give NAME=VALUE, such as " + example};
         }
         if (auto set = set_field(settings, std::string_view(change).substr(0, equals),
                                  std::string_view(change).substr(equals + 1));
@@ -70,6 +72,29 @@ Result<void> apply_settings(const std::vector<std::string>& changes, DecodeSetti
         }
     }
     return {};
+}
+
+}  // namespace
+
+Result<void> apply_settings(const std::vector<std::string>& changes, DecodeSettings& settings) {
+    return apply(changes, "min_modulation=8", settings);
+}
+
+void add_gesture_settings_option(CLI::App& command, std::vector<std::string>& changes) {
+    std::string text = "Changes a threshold of the recognisers:";
+    for (const GestureField& field : gesture_fields()) {
+        if (!field.is_switch) {
+            text +=
+                fmt::format("\n{} ({} to {}; else {})", field.name, base::number_text(field.least),
+                            base::number_text(field.most), base::number_text(field.standard()));
+        }
+    }
+    command.add_option("--set", changes, text)->type_name("NAME=VALUE")->allow_extra_args(false);
+}
+
+Result<void> apply_gesture_settings(const std::vector<std::string>& changes,
+                                    GestureSettings& settings) {
+    return apply(changes, "swipe_speed_mmps=250", settings);
 }
 
 Result<void> check_settings(const std::vector<std::string>& changes, DecodeMethod method,

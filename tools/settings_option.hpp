@@ -7,6 +7,7 @@
 
 #include <CLI/App.hpp>
 #include <xtrack/decode_settings.hpp>
+#include <xtrack/gesture_settings.hpp>
 #include <xtrack/session.hpp>
 
 namespace xtrack::tools {
@@ -20,6 +21,13 @@ void add_settings_option(CLI::App& command, std::vector<std::string>& changes,
 /// @errors invalid_argument: what is no NAME=VALUE, a name that is none, a value out of range
 [[nodiscard]] Result<void> apply_settings(const std::vector<std::string>& changes,
                                           DecodeSettings& settings);
+
+/// The same of the recognisers' thresholds; which gestures there are, --gestures says.
+void add_gesture_settings_option(CLI::App& command, std::vector<std::string>& changes);
+
+/// @errors invalid_argument: what is no NAME=VALUE, a name that is none, a value out of range
+[[nodiscard]] Result<void> apply_gesture_settings(const std::vector<std::string>& changes,
+                                                  GestureSettings& settings);
 
 /// Whether all of them mean something to what decodes.
 /// @param method Session::method(), or how a command decodes

@@ -92,24 +92,25 @@ void append(std::vector<double>& to, const std::vector<double>& from) {
     to.insert(to.end(), from.begin(), from.end());
 }
 
-/// How long after the definition was fulfilled each found gesture was told.
-void measure_delay(TrialResult& result) {
-    for (const JudgedEvent& judged : result.events) {
+}  // namespace
+
+std::vector<CommitDelay> delays_after_commit(std::span<const JudgedEvent> events,
+                                             std::span<const GestureLabel> labels) {
+    std::vector<CommitDelay> delays;
+    for (const JudgedEvent& judged : events) {
         if (judged.verdict != Verdict::correct) {
             continue;
         }
         const std::string name = name_of(judged.event);
-        for (const GestureLabel& label : result.labels) {
+        for (const GestureLabel& label : labels) {
             if (label.gesture == name && label.commit && judged.event.sensor >= label.start &&
                 judged.event.sensor <= label.end + std::chrono::milliseconds(200)) {
-                result.after_commit_ms.push_back(to_seconds(judged.event.sensor - *label.commit) *
-                                                 1e3);
+                delays.push_back({name, to_seconds(judged.event.sensor - *label.commit) * 1e3});
             }
         }
     }
+    return delays;
 }
-
-}  // namespace
 
 void TrialResult::add(const TrialResult& other) {
     score.add(other.score);
@@ -175,7 +176,9 @@ Result<TrialResult> run_trial(const TrialOptions& options, const TrialSetup& set
     result.events = scorer.add(events, result.labels, length);
     result.score = scorer.all();
     result.statistics = session->statistics();
-    measure_delay(result);
+    for (const CommitDelay& delay : delays_after_commit(result.events, result.labels)) {
+        result.after_commit_ms.push_back(delay.ms);
+    }
     return result;
 }
 

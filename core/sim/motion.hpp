@@ -10,6 +10,7 @@
 
 #include "core/sim/hand_model.hpp"
 #include "core/sim/hand_pose.hpp"
+#include "core/sim/sway.hpp"
 
 namespace xtrack::sim {
 
@@ -83,16 +84,6 @@ class HandMotion {
 
  private:
     class Planner;
-    struct Wave {
-        float amplitude = 0.0F;
-        float rad_per_s = 0.0F;
-        float phase_rad = 0.0F;
-    };
-    static constexpr std::size_t kWaves = 4;
-    static constexpr std::size_t kWaveChannels = 7;  // place, turns, fingers together
-
-    [[nodiscard]] float sway(std::size_t channel, double t_s) const;
-    void plan_sway(std::uint64_t seed);
 
     SimHand hand_;
     Vec3f shoulder_mm_ = Vec3f::Zero();
@@ -100,7 +91,7 @@ class HandMotion {
     Track<3> place_;     ///< palm, camera frame, mm
     Track<3> turn_;      ///< rad
     Track<20> fingers_;  ///< FingerAngles
-    std::array<std::array<Wave, kWaves>, kWaveChannels> waves_{};
+    Sway sway_;
     std::vector<SimLabel> labels_;
 };
 

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include <xtrack/gesture_settings.hpp>
+#include <xtrack/result.hpp>
+#include <xtrack/scoring.hpp>
+
+#include "tools/corpus/sequence.hpp"
+
+namespace xtrack::tools::corpus {
+
+/// An event that was none, or a gesture that was missed, and what is known of why.
+struct Finding {
+    std::string sequence;  ///< with its seed and view
+    double t_s = 0.0;
+    std::string gesture;  ///< of the event, or of the label that nothing matched
+    std::string doing;    ///< what the hand did
+    bool missed = false;
+    bool wrong_hand = false;
+    bool strange = false;  ///< a stranger's
+    /// The movement fulfils the plain definition (swipes, pushes and pulls; false of others).
+    bool by_definition = false;
+    std::string why_not;  ///< missed: what its machine said last
+};
+
+/// All that sequences gave, added up.
+struct Tally {
+    std::map<std::string, GestureScore> scores;
+    std::map<std::string, std::vector<double>> delay_ms;  ///< from the label's commit
+    std::vector<Finding> findings;
+    double hours = 0.0;
+    int sequences = 0;
+    int false_events = 0;    ///< of hands that were listened to
+    int strange_events = 0;  ///< of hands that should not have been
+    int owner_changes = 0;   ///< a stranger took a session that was another's
+    int engagements = 0;
+    int short_of_definition = 0;
+
+    void add(const Tally& other);
+    [[nodiscard]] GestureScore all() const;
+    [[nodiscard]] std::vector<double> all_delays() const;
+};
+
+/// Runs one sequence through one recogniser.
+/// @errors invalid_argument: settings out of range
+[[nodiscard]] Result<Tally> run(const Sequence& sequence, const GestureSettings& settings);
+
+/// The hands of a sequence frame by frame, as its recording would hold them: interaction frame.
+[[nodiscard]] std::vector<HandFrame> frames_of(const Sequence& sequence);
+
+}  // namespace xtrack::tools::corpus
