@@ -231,9 +231,9 @@ void turn_pages(Movement& m) {
     m.shape(gripping(), 0.4);
     const int pages = 1 + static_cast<int>(m.random().bits() % 4);
     for (int i = 0; i < pages; ++i) {
-        carry(m, at_body(m, 120.0, 220.0, 210.0) + jitter(m, 10.0), m.draw(150.0, 350.0), 10.0);
+        carry(m, at_body(m, 120.0, 220.0, 210.0) + jitter(m, 10.0), m.draw(90.0, 150.0), 10.0);
         m.wait(m.draw(0.3, 0.6));
-        carry(m, at_body(m, -40.0, 220.0, 210.0) + jitter(m, 10.0), m.draw(150.0, 400.0), 70.0);
+        carry(m, at_body(m, -40.0, 220.0, 210.0) + jitter(m, 10.0), m.draw(90.0, 150.0), 70.0);
         m.wait(m.draw(2.0, 8.0));
     }
     settle(m, 20.0);

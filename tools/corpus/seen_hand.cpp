@@ -11,8 +11,10 @@ namespace xtrack::tools::corpus {
 namespace {
 
 // Of the model's hand, mm; measured (`xtrack corpus --measure-noise` prints what is left of it).
-constexpr float kPalmSkinMm = 13.0F;    // from the palm joint to the skin before it
-constexpr float kPalmRadiusMm = 41.0F;  // square to the camera
+constexpr float kPalmSkinMm = 16.5F;    // from the palm joint to the skin before it
+constexpr float kPalmToThumbMm = 4.8F;  // the widest circle lies nearer to the ball of the thumb
+constexpr float kPalmToWristMm = 5.2F;  // and to the wrist than the joint
+constexpr float kPalmRadiusMm = 43.3F;  // square to the camera
 constexpr float kPalmSideMm = 15.0F;    // half the thickness: what an edge-on hand shows
 constexpr float kFingerWidthMm = 17.0F;
 
@@ -59,7 +61,9 @@ SeenHand look_at(const sim::HandPose& pose, SimHand hand, float scale, const Pin
     }
     seen.palm_normal = normal;
     seen.palm_radius_mm = scale * std::max(kPalmRadiusMm * std::sqrt(facing), kPalmSideMm);
-    seen.palm_mm = centre + to_camera * (scale * kPalmSkinMm);
+    const auto& turned = bones.bones[sim::kHandBone].rotation;  // and scaled
+    seen.palm_mm = centre + to_camera * (scale * kPalmSkinMm) + turned.col(0) * kPalmToThumbMm -
+                   turned.col(1) * kPalmToWristMm;
 
     float finger_area = 0.0F;
     const float z = seen.palm_mm.z();

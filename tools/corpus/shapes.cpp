@@ -78,9 +78,18 @@ FingerAngles pinched() {
     return closed;
 }
 
-FingerAngles gripping() { return mixed(sim::relaxed_open(), fist(), 0.5F); }
+// The thumb stays away from the index finger: were it to come near, that would be a pinch.
+FingerAngles gripping() {
+    FingerAngles f = mixed(sim::relaxed_open(), fist(), 0.5F);
+    set(f, 0, {0.45F, 0.35F, 0.05F, 0.05F});
+    return f;
+}
 
-FingerAngles loose(float curl) { return mixed(sim::relaxed_open(), fist(), 0.45F * curl); }
+FingerAngles loose(float curl) {
+    FingerAngles f = mixed(sim::relaxed_open(), fist(), 0.45F * curl);
+    set(f, 0, {0.05F + 0.15F * curl, 0.15F * curl, 0.05F, 0.10F});
+    return f;
+}
 
 FingerAngles with_index_bent(FingerAngles fingers, float rad) {
     float* a = &fingers[1 * kAnglesPerFinger];

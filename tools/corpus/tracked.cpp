@@ -23,6 +23,7 @@ constexpr double kClearOfBodyMm = 120.0;
 constexpr double kNearestMm = 150.0;
 constexpr double kFarthestMm = 1500.0;
 constexpr double kConfidenceSmoothS = 0.1;
+constexpr double kLongLossesPerS = 1.0 / 60.0;
 constexpr double kVelocityWindowS = 0.105;
 constexpr double kLongestWindowS = 0.21;
 
@@ -87,10 +88,11 @@ void Tracked::step(Follow& f, double dt_s) {
     for (std::size_t finger = 0; finger < kFingerCount; ++finger) {
         f.extension[finger].step(random_, dt_s, slow);
         f.tip_mood[finger].step(random_, dt_s, slow);
+        f.finger_mood[finger].step(random_, dt_s, slow);
     }
     f.aperture.step(random_, dt_s, quick);
     f.grab.step(random_, dt_s, slow);
-    f.surety.step(random_, dt_s, slow);
+    f.wild.step(random_, dt_s, slow);
     f.known.step(random_, dt_s, slow);
     f.side.step(random_, dt_s, slow);
     f.outlier.step(random_, dt_s, quick);
@@ -146,6 +148,10 @@ bool Tracked::see(Follow& f, double t_s, double dt_s, Hand& hand) {
         if (random_.unit() < share / (1.0 - share) * dt_s / lost_s) {
             f.lost_until_s = t_s - lost_s * std::log(1.0 - random_.unit());
         }
+        // And now and then for longer, which no simulated rig has shown, but every real one does.
+        if (random_.unit() < kLongLossesPerS * dt_s) {
+            f.lost_until_s = t_s + random_.between(0.1, 0.4);
+        }
     }
     visible = visible && t_s >= f.lost_until_s;
     if (!visible) {
@@ -169,7 +175,7 @@ bool Tracked::see(Follow& f, double t_s, double dt_s, Hand& hand) {
     hand.id = f.id;
     hand.touches_border = seen.touches_border && view_ != View::joints;
     const double wanted =
-        std::clamp(noise_.confidence + noise_.confidence_spread * f.surety.value, 0.0, 1.0) *
+        noise_.confidence *
         std::clamp((clearance - kBeforeBodyMm) / (kClearOfBodyMm - kBeforeBodyMm), 0.0, 1.0);
     f.confidence += (1.0 - std::exp(-dt_s / kConfidenceSmoothS)) * (wanted - f.confidence);
     if (t_s == f.first_seen_s) {
@@ -226,16 +232,19 @@ void Tracked::see_depth(Follow& f, const SeenHand& seen, bool moves, Hand& hand)
                                      kTipGaps_mm)]
                 : n.hidden_tip_valid;
         const bool valid = f.tip_mood[i].value < share;
-        constexpr float kKnown = 0.05F;
-        float extension = valid || seen.extension[i] > kKnown ? seen.extension[i] : 0.0F;
-        extension += static_cast<float>(n.extension[moves] * f.extension[i].value);
-        hand.finger_extension[i] = std::clamp(extension, 0.0F, 1.0F);
+        double extension = seen.extension[i];
+        if (f.finger_mood[i].value < n.finger_lost[moves]) {
+            extension = 0.0;
+        } else if (extension > 0.0 && extension < 1.0) {
+            extension += n.bent_off + n.bent * f.extension[i].value;
+        }
+        hand.finger_extension[i] = static_cast<float>(std::clamp(extension, 0.0, 1.0));
         constexpr float kExtended = 0.35F;
         hand.extended_fingers += hand.finger_extension[i] >= kExtended ? 1 : 0;
         if (valid) {
             const double jitter = n.tip_mm[moves];
             hand.fingertips[i] = {
-                to_user(seen.tips_mm[i] + off + scaled(f.points[i], jitter, jitter, jitter)), true};
+                to_user(seen.tips_mm[i] + scaled(f.points[i], jitter, jitter, jitter)), true};
         }
     }
     hand.grab_value = std::clamp(seen.grab + static_cast<float>(n.grab * f.grab.value), 0.0F, 1.0F);

@@ -60,11 +60,11 @@ class Tracked {
         std::array<Drift, 3> normal;
         Drift aperture;
         Drift grab;
-        Drift surety;
+        std::array<Mood, kFingerCount> finger_mood;
         Mood outlier;
+        Mood wild;
         Mood known;
         Mood side;
-        std::array<Vec3f, 3> outlier_way{};
         std::array<Stamp, 32> stamps{};
         std::array<Vec3f, 32> path_mm{};
         std::size_t path = 0;
