@@ -18,6 +18,7 @@
 
 #include "core/sim/random.hpp"
 #include "tools/commands.hpp"
+#include "tools/corpus/images.hpp"
 #include "tools/corpus/measure_noise.hpp"
 #include "tools/corpus/performer.hpp"
 #include "tools/corpus/report.hpp"
@@ -141,6 +142,9 @@ class Plan {
         }
         if (wants(Part::company)) {
             plan_company();
+        }
+        if (options.images || options.only == to_string(Part::images)) {
+            plan_images();
         }
     }
 
@@ -268,6 +272,27 @@ class Plan {
         }
     }
 
+    /// Images take a second for every second: fewer people, each gesture once.
+    void plan_images() {
+        const GestureSettings& settings = sets_.front().settings;
+        const auto names = corpus::names_of(settings);
+        for (const corpus::ImageRig& rig : corpus::kImageRigs) {
+            const std::size_t group =
+                add_group(Part::images, fmt::format("{}; {}", sets_.front().name, rig.name));
+            const int people = (options_.people + 8) / 9;
+            for (int i = 0; i < people; ++i) {
+                const auto person = seed(400'000 + static_cast<std::uint64_t>(i));
+                jobs_.push_back(
+                    {group, [=] {
+                         return corpus::run_images(
+                             corpus::perform_all(
+                                 names, corpus::before_a_rig(corpus::draw_person(person)), 1, {}),
+                             rig, settings);
+                     }});
+            }
+        }
+    }
+
     const CorpusOptions& options_;
     std::vector<Wanted> sets_;
     std::vector<Group> groups_;
@@ -309,9 +334,11 @@ void add_corpus(CLI::App& app, int& exit_status) {
         "--gestures", options->gestures,
         "One set of gestures, comma-separated (else the whole vocabulary, in sets)");
     add_gesture_settings_option(*command, options->changes);
+    command->add_flag("--images", options->images,
+                      "Fringe images through the whole pipeline, too (some minutes)");
     command->add_option("--only", options->only, "One part alone")
-        ->check(CLI::IsMember(
-            std::vector<std::string>{"gestures", "manners", "everyday", "passers-by", "company"}));
+        ->check(CLI::IsMember(std::vector<std::string>{"gestures", "manners", "everyday",
+                                                       "passers-by", "company", "images"}));
     command->add_flag("--explain", options->explain, "Every false event and missed gesture");
     command->add_flag("--json", options->json, "JSON instead of tables");
     command->add_flag("--measure-noise", options->measure_noise,

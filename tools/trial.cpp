@@ -114,6 +114,9 @@ std::vector<CommitDelay> delays_after_commit(std::span<const JudgedEvent> events
 
 void TrialResult::add(const TrialResult& other) {
     score.add(other.score);
+    for (const auto& [name, one] : other.gestures) {
+        gestures[name].add(one);
+    }
     append(after_commit_ms, other.after_commit_ms);
     append(depth_rms_mm, other.depth_rms_mm);
     append(depth_off, other.depth_off);
@@ -123,6 +126,9 @@ void TrialResult::add(const TrialResult& other) {
 }
 
 GestureSettings gestures_of(const TrialOptions& options) {
+    if (options.gestures) {
+        return *options.gestures;
+    }
     GestureSettings gestures;
     gestures.pinch = options.use_rig;
     return gestures;
@@ -141,12 +147,16 @@ Result<TrialResult> run_trial(const TrialOptions& options, const TrialSetup& set
             return shown.error();
         }
     }
+    if (options.arrange) {
+        options.arrange(*settings);
+    }
     auto rig = SimulatedRig::create(*settings);
     if (!rig) {
         return rig.error();
     }
     SimulatedRig& sim = **rig;
     TrialResult result;
+    result.labels = options.labels;
     for (const SimLabel& label : sim.labels()) {
         result.labels.push_back(label_of(label));
     }
@@ -175,6 +185,7 @@ Result<TrialResult> run_trial(const TrialOptions& options, const TrialSetup& set
     GestureScorer scorer(session_options.gestures);
     result.events = scorer.add(events, result.labels, length);
     result.score = scorer.all();
+    result.gestures = scorer.gestures();
     result.statistics = session->statistics();
     for (const CommitDelay& delay : delays_after_commit(result.events, result.labels)) {
         result.after_commit_ms.push_back(delay.ms);

@@ -104,6 +104,15 @@ Vec3f away_of(const SimSettings& settings, SimHand hand) {
             static_cast<float>(z)};
 }
 
+Vec3f shoulder_of(const SimUser& user, SimHand hand) {
+    constexpr double kShoulderHalfMm = 185.0;
+    constexpr double kShoulderDownMm = -35.0;
+    constexpr double kShoulderBehindChestMm = 75.0;
+    return {static_cast<float>(hand == SimHand::right ? -kShoulderHalfMm : kShoulderHalfMm),
+            static_cast<float>(kShoulderDownMm),
+            static_cast<float>(user.chest_distance_mm + kShoulderBehindChestMm)};
+}
+
 }  // namespace
 
 /// Lays the steps of a script onto the tracks.
@@ -340,17 +349,28 @@ HandMotion::HandMotion(const SimSettings& settings, SimHand hand, const HandMode
         }
     }
     place_ = Track<3>(to_array(enters ? away_of(settings, hand) : home_of(settings.user, hand)));
-    constexpr double kShoulderHalfMm = 185.0;
-    constexpr double kShoulderDownMm = -35.0;
-    constexpr double kShoulderBehindChestMm = 75.0;
-    shoulder_mm_ = {static_cast<float>(hand == SimHand::right ? -kShoulderHalfMm : kShoulderHalfMm),
-                    static_cast<float>(kShoulderDownMm),
-                    static_cast<float>(settings.user.chest_distance_mm + kShoulderBehindChestMm)};
+    shoulder_mm_ = shoulder_of(settings.user, hand);
     Planner planner(*this, settings, model);
     for (const SimStep& step : settings.script) {
         if (step.hand == hand) {
             planner.run(step);
         }
+    }
+}
+
+HandMotion::HandMotion(const SimSettings& settings, const SimPath& path)
+    : hand_(path.hand),
+      shoulder_mm_(shoulder_of(settings.user, path.hand)),
+      clock_s_(path.poses.back().t_s),
+      place_(to_array(path.poses.front().palm_mm)),
+      turn_(to_array(path.poses.front().turn_rad)),
+      fingers_(path.poses.front().fingers_rad) {
+    double before = path.poses.front().t_s;
+    for (const SimPose& pose : path.poses) {
+        place_.move_evenly(before, pose.t_s, to_array(pose.palm_mm));
+        turn_.move_evenly(before, pose.t_s, to_array(pose.turn_rad));
+        fingers_.move_evenly(before, pose.t_s, pose.fingers_rad);
+        before = pose.t_s;
     }
 }
 
@@ -360,7 +380,9 @@ HandPose HandMotion::at(double t_s) const {
     pose.palm_mm = to_vector(place_.at(t_s));
     pose.turn_rad = to_vector(turn_.at(t_s));
     pose.fingers = fingers_.at(t_s);
-    sway_.add(t_s, pose);
+    if (sway_) {
+        sway_->add(t_s, pose);
+    }
     return pose;
 }
 

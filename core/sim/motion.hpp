@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <xtrack/sim.hpp>
@@ -74,7 +75,10 @@ class Track {
 /// All that one hand does, from its first to its last moment.
 class HandMotion {
  public:
+    /// Performs the script of this hand.
     HandMotion(const SimSettings& settings, SimHand hand, const HandModel& model);
+    /// Moves as it is told, without a sway of its own. @pre the path has poses
+    HandMotion(const SimSettings& settings, const SimPath& path);
 
     [[nodiscard]] SimHand hand() const noexcept { return hand_; }
     [[nodiscard]] HandPose at(double t_s) const;
@@ -91,7 +95,7 @@ class HandMotion {
     Track<3> place_;     ///< palm, camera frame, mm
     Track<3> turn_;      ///< rad
     Track<20> fingers_;  ///< FingerAngles
-    Sway sway_;
+    std::optional<Sway> sway_;
     std::vector<SimLabel> labels_;
 };
 

@@ -78,6 +78,7 @@ void Performer::go_slowly(const Vec3f& target) {
 
 void Performer::enter() {
     m_.begin("coming");
+    m_.wait(0.6);  // an empty room first: something to learn the background from
     m_.shape(loose(static_cast<float>(m_.draw(0.0, 0.5))), 0.5);
     m_.go(m_.home(), m_.draw(0.7, 1.7));
     m_.wait(m_.draw(0.4, 1.0));

@@ -17,6 +17,8 @@ namespace xtrack::tools::corpus {
 
 namespace {
 
+constexpr Duration kAfterLabel = std::chrono::milliseconds(200);  // as the scorer has it
+
 double seconds(Stamp s) { return static_cast<double>(s.ns) * 1e-9; }
 
 std::vector<const Movement*> pointers(const Sequence& sequence) {
@@ -35,22 +37,34 @@ void follow(const Sequence& sequence, Tracked& tracked, const auto& take) {
     }
 }
 
-/// What the machines said no to.
-struct Refused {
-    Stamp stamp;
-    const char* machine;
-    const char* why;
-};
-
 /// The name of the machine that decides a gesture begins the gesture's name: swipe of swipe_left.
-std::string why_missed(const GestureLabel& label, const std::vector<Refused>& refused) {
-    for (auto r = refused.rbegin(); r != refused.rend(); ++r) {
-        if (r->stamp >= label.start && r->stamp <= label.end + std::chrono::milliseconds(200) &&
+std::string why_missed(const GestureLabel& label, std::span<const Refusal> refusals) {
+    for (auto r = refusals.rbegin(); r != refusals.rend(); ++r) {
+        if (r->stamp >= label.start && r->stamp <= label.end + kAfterLabel &&
             label.gesture.starts_with(r->machine)) {
             return r->why;
         }
     }
     return "nothing said";
+}
+
+std::string name_of(const Sequence& sequence) {
+    return fmt::format("{} {} ({} {:.0f} Hz)", sequence.name, sequence.seed,
+                       to_string(sequence.view), sequence.frame_hz);
+}
+
+Finding finding_of(const Sequence& sequence, const GestureEvent& event, std::size_t hand,
+                   bool wrong_hand) {
+    const Movement& m = sequence.hands[hand];
+    Finding f;
+    f.sequence = name_of(sequence);
+    f.t_s = seconds(event.sensor);
+    f.gesture = xtrack::name_of(event);
+    f.doing = m.doing_at(f.t_s);
+    f.wrong_hand = wrong_hand;
+    f.strange = sequence.strange[hand];
+    f.by_definition = definitions::fulfilled_before(m, f.gesture, f.t_s);
+    return f;
 }
 
 bool is_false(Verdict v) {
@@ -93,68 +107,85 @@ std::vector<double> Tally::all_delays() const {
     return all;
 }
 
+Tally tally_of(const Sequence& sequence, std::map<std::string, GestureScore> scores,
+               std::span<const JudgedEvent> judged, const HandOf& hand_of,
+               std::span<const Refusal> refusals) {
+    Tally tally;
+    tally.sequences = 1;
+    tally.hours = sequence.end_s / 3600.0;
+    tally.short_of_definition = sequence.short_of_definition;
+    tally.scores = std::move(scores);
+    for (const JudgedEvent& event : judged) {
+        if (is_false(event.verdict)) {
+            ++tally.false_events;
+            tally.findings.push_back(finding_of(sequence, event.event, hand_of(event.event),
+                                                event.verdict == Verdict::wrong_hand));
+        }
+    }
+    for (const CommitDelay& delay : delays_after_commit(judged, sequence.labels)) {
+        tally.delay_ms[delay.gesture].push_back(delay.ms);
+    }
+    for (const GestureLabel& label : sequence.labels) {
+        const bool found = std::any_of(judged.begin(), judged.end(), [&](const JudgedEvent& e) {
+            return e.verdict == Verdict::correct && name_of(e.event) == label.gesture &&
+                   e.event.sensor >= label.start && e.event.sensor <= label.end + kAfterLabel;
+        });
+        if (!found) {
+            Finding f;
+            f.sequence = name_of(sequence);
+            f.t_s = seconds(label.start);
+            f.gesture = label.gesture;
+            f.missed = true;
+            f.why_not = why_missed(label, refusals);
+            tally.findings.push_back(std::move(f));
+        }
+    }
+    return tally;
+}
+
 Result<Tally> run(const Sequence& sequence, const GestureSettings& settings) {
     auto recogniser = GestureRecogniser::create(settings);
     if (!recogniser) {
         return recogniser.error();
     }
-    Tally tally;
-    tally.sequences = 1;
-    tally.hours = sequence.end_s / 3600.0;
-    tally.short_of_definition = sequence.short_of_definition;
-    std::vector<Refused> refused;
-    recogniser->set_trace([&refused](const RecogniserTrace& trace) {
+    std::vector<Refusal> refusals;
+    recogniser->set_trace([&refusals](const RecogniserTrace& trace) {
         if (*trace.why != '\0') {
-            refused.push_back({trace.stamp, trace.machine, trace.why});
+            refusals.push_back({trace.stamp, trace.machine, trace.why});
         }
     });
-    std::vector<GestureEvent> heard;   // of hands that may act
-    std::vector<std::size_t> hand_of;  // of each that begins
-    const std::string where = fmt::format("{} {} ({} {:.0f} Hz)", sequence.name, sequence.seed,
-                                          to_string(sequence.view), sequence.frame_hz);
-    const auto note = [&](const GestureEvent& event, std::size_t hand, bool wrong_hand) {
-        const Movement& m = sequence.hands[hand];
-        const double t = seconds(event.sensor);
-        Finding f;
-        f.sequence = where;
-        f.t_s = t;
-        f.gesture = name_of(event);
-        f.doing = m.doing_at(t);
-        f.wrong_hand = wrong_hand;
-        f.strange = sequence.strange[hand];
-        f.by_definition = definitions::fulfilled_before(m, f.gesture, t);
-        tally.findings.push_back(std::move(f));
-    };
     const std::vector<const Movement*> hands = pointers(sequence);
     Tracked tracked(sequence.view, sequence.frame_hz, sequence.seed, hands);
+    const HandOf hand_of = [&tracked](const GestureEvent& e) {
+        return tracked.owner_of(e.hand_id);
+    };
+    std::vector<GestureEvent> heard;  // of hands that may act
+    Tally of_strangers;
     std::optional<std::size_t> owner;
     const auto take = [&](std::span<const GestureEvent> events) {
         for (const GestureEvent& event : events) {
             if (event.type == GestureType::hand) {
                 continue;
             }
-            const std::size_t hand = tracked.owner_of(event.hand_id);
+            const std::size_t hand = hand_of(event);
+            const bool strange = sequence.strange[hand];
+            const bool begins = event.phase == EventPhase::begin;
             if (event.type == GestureType::engage) {
-                if (event.phase == EventPhase::begin) {
-                    ++tally.engagements;
-                    if (sequence.strange[hand]) {
-                        tally.owner_changes += owner && !sequence.strange[*owner] ? 1 : 0;
-                        note(event, hand, false);
-                    }
+                if (begins) {
+                    ++of_strangers.engagements;
+                    of_strangers.owner_changes +=
+                        strange && owner && !sequence.strange[*owner] ? 1 : 0;
                     owner = hand;
                 } else if (event.phase != EventPhase::update && owner == hand) {
                     owner.reset();
                 }
-                continue;
-            }
-            if (!sequence.strange[hand]) {
+            } else if (!strange) {
                 heard.push_back(event);
-                if (event.phase == EventPhase::begin) {
-                    hand_of.push_back(hand);
-                }
-            } else if (event.phase == EventPhase::begin) {
-                ++tally.strange_events;
-                note(event, hand, false);
+            } else if (begins) {
+                ++of_strangers.strange_events;
+            }
+            if (strange && begins) {
+                of_strangers.findings.push_back(finding_of(sequence, event, hand, false));
             }
         }
     };
@@ -163,40 +194,8 @@ Result<Tally> run(const Sequence& sequence, const GestureSettings& settings) {
     GestureScorer scorer(settings);
     const std::vector<JudgedEvent> judged =
         scorer.add(heard, sequence.labels, Duration{std::llround(sequence.end_s * 1e9)});
-    tally.scores = scorer.gestures();
-    for (const JudgedEvent& event : judged) {
-        if (!is_false(event.verdict)) {
-            continue;
-        }
-        ++tally.false_events;
-        const auto begun = std::find_if(heard.begin(), heard.end(), [&](const GestureEvent& e) {
-            return e.gesture_id == event.event.gesture_id && e.phase == EventPhase::begin;
-        });
-        const auto index =
-            static_cast<std::size_t>(std::count_if(heard.begin(), begun, [](const GestureEvent& e) {
-                return e.phase == EventPhase::begin;
-            }));
-        note(event.event, hand_of[index], event.verdict == Verdict::wrong_hand);
-    }
-    for (const CommitDelay& delay : delays_after_commit(judged, sequence.labels)) {
-        tally.delay_ms[delay.gesture].push_back(delay.ms);
-    }
-    for (const GestureLabel& label : sequence.labels) {
-        const bool found = std::any_of(judged.begin(), judged.end(), [&](const JudgedEvent& e) {
-            return e.verdict == Verdict::correct && name_of(e.event) == label.gesture &&
-                   e.event.sensor >= label.start &&
-                   e.event.sensor <= label.end + std::chrono::milliseconds(200);
-        });
-        if (!found) {
-            Finding f;
-            f.sequence = where;
-            f.t_s = seconds(label.start);
-            f.gesture = label.gesture;
-            f.missed = true;
-            f.why_not = why_missed(label, refused);
-            tally.findings.push_back(std::move(f));
-        }
-    }
+    Tally tally = tally_of(sequence, scorer.gestures(), judged, hand_of, refusals);
+    tally.add(of_strangers);
     return tally;
 }
 

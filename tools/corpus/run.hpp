@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,6 +46,21 @@ struct Tally {
     [[nodiscard]] GestureScore all() const;
     [[nodiscard]] std::vector<double> all_delays() const;
 };
+
+/// What a machine said no to.
+struct Refusal {
+    Stamp stamp;
+    const char* machine = "";
+    const char* why = "";
+};
+
+/// Which of a sequence's hands an event is of.
+using HandOf = std::function<std::size_t(const GestureEvent&)>;
+
+/// Adds up what a scorer made of a sequence's events.
+[[nodiscard]] Tally tally_of(const Sequence& sequence, std::map<std::string, GestureScore> scores,
+                             std::span<const JudgedEvent> judged, const HandOf& hand_of,
+                             std::span<const Refusal> refusals);
 
 /// Runs one sequence through one recogniser.
 /// @errors invalid_argument: settings out of range
