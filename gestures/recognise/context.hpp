@@ -11,6 +11,7 @@
 #include <xtrack/gesture_settings.hpp>
 
 #include "gestures/recognise/motion_history.hpp"
+#include "gestures/recognise/signal.hpp"
 
 namespace xtrack::recognise {
 
@@ -22,12 +23,15 @@ class Outbox {
 
     explicit Outbox(const GestureSettings& settings) : settings_(&settings) {}
 
-    void clear() noexcept { count_ = 0; }
+    void clear() noexcept { count_ = muted_count_ = 0; }
     /// Of the hands that the next events are made from: HandFrame::metric.
     void set_metric(bool metric) noexcept { metric_ = metric; }
-    /// Of a hand that is only watched.
+    /// Of a hand that is only watched: its events are counted, and do not go out. @{
     void mute(bool muted) noexcept { muted_ = muted; }
+    [[nodiscard]] std::size_t muted_count() const noexcept { return muted_count_; }
+    /// @}
     void add(const GestureEvent& event) noexcept {
+        muted_count_ += muted_ ? 1 : 0;
         if (count_ < kCapacity && !muted_ && is_wanted(*settings_, event.type)) {
             events_[count_] = event;
             events_[count_++].metric = metric_;
@@ -42,6 +46,7 @@ class Outbox {
     std::size_t count_ = 0;
     bool metric_ = true;
     bool muted_ = false;
+    std::size_t muted_count_ = 0;
     const GestureSettings* settings_;
 };
 
@@ -83,7 +88,8 @@ enum class Rank {
     grip,    ///< pinch, grab
     stroke,  ///< swipe, push, pull, tap, raise
     rhythm,  ///< circle, wave
-    pose,    ///< poses, dwell
+    dwell,
+    pose,
     none,
 };
 
@@ -99,7 +105,8 @@ struct Context {
     const GestureSettings& settings;
     const MotionHistory& history;
     const Hand& hand;  ///< as last seen
-    Stamp sensor;      ///< newest frame of the decision
+    const Signal& signal;
+    Stamp sensor;  ///< newest frame of the decision
     Stamp emit;
     Gate gate = Gate::open;
     bool taken = false;  ///< another, stronger gesture owns the hand

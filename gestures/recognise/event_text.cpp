@@ -116,6 +116,17 @@ const char* to_string(CancelReason r) noexcept {
     return "unknown";
 }
 
+std::span<const Direction> directions_of(GestureType t) noexcept {
+    static constexpr std::array kSwipes{Direction::left, Direction::right, Direction::up,
+                                        Direction::down};
+    static constexpr std::array kTurns{Direction::clockwise, Direction::counterclockwise};
+    if (t == GestureType::swipe) {
+        return kSwipes;
+    }
+    return t == GestureType::circle ? std::span<const Direction>{kTurns}
+                                    : std::span<const Direction>{};
+}
+
 std::string name_of(const GestureEvent& event) {
     std::string name = to_string(event.type);
     if (event.direction != Direction::none) {

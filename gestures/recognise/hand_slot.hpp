@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-
 #include <xtrack/hand.hpp>
+#include <xtrack/one_euro_filter.hpp>
 
 #include "gestures/recognise/context.hpp"
+#include "gestures/recognise/drag.hpp"
+#include "gestures/recognise/dwell.hpp"
 #include "gestures/recognise/pinch.hpp"
 #include "gestures/recognise/presence.hpp"
+#include "gestures/recognise/press.hpp"
 #include "gestures/recognise/push.hpp"
+#include "gestures/recognise/silence.hpp"
 #include "gestures/recognise/swipe.hpp"
+#include "gestures/recognise/touch.hpp"
 #include "gestures/recognise/wave.hpp"
 
 namespace xtrack::recognise {
@@ -21,20 +25,40 @@ namespace xtrack::recognise {
 ///   - finish(c): the stream is over: what is active ends;
 ///   - holds(): something is active;
 ///   - sends(settings): what it would send next is switched on.
+/// The drag is one more, which needs to hear of the others' grip.
 struct Machines {
+    PressMachine press;
+    TouchMachine touch;
     PinchMachine pinch;
     WaveMachine wave;
     SwipeMachine swipe;
     PushMachine push;
+    DwellMachine dwell;
+    DragMachine drag;
 
     /// In the order of their turns: the strong before the weak, but rhythms before strokes, because
     /// a stroke that is part of a rhythm is none.
     template <typename Act>
     void each(const Act& act) {
+        act(press);
+        act(touch);
         act(pinch);
         act(wave);
         act(swipe);
         act(push);
+        act(dwell);
+    }
+
+    template <typename Act>
+    void each_and_drag(const Act& act) {
+        act(drag);
+        each(act);
+    }
+
+    /// Those that something else can go on with are taken over: cancelled, but followed.
+    void carry(const Context& c) {
+        press.carry(c);
+        pinch.carry(c);
     }
 };
 
@@ -45,72 +69,33 @@ struct HandSlot {
     Hand hand;  ///< as last seen
     Presence presence;
     MotionHistory history;
+    OneEuroFilter3 pointer;
+    SignalMeter meter;
+    Silence silence;
     Machines machines;
+    bool was_active = false;  ///< a gesture was, in the last frame
+    bool summons = false;     ///< it has just waved: for a session that is idle
 
-    void begin(const Hand& seen, Stamp now, bool in_view) {
-        used = true;
-        hand = seen;
-        history.clear();
-        machines = {};
-        presence.appear(now, in_view);
-    }
+    void begin(const Hand& seen, Stamp now, bool in_view);
+    /// @return false when the sample was left out (MotionHistory::add())
+    bool add(Stamp now, Duration span);
+    void forget_motion();
 
-    void drop(const Context& c, CancelReason reason, const char* why) {
-        machines.each([&](auto& machine) { machine.drop(c, reason, why); });
-    }
-
+    void drop(const Context& c, CancelReason reason, const char* why);
     /// What is active and will not be wanted any more is cancelled.
-    void switch_off(const Context& c, const GestureSettings& future) {
-        machines.each([&](auto& machine) {
-            if (machine.sends(c.settings) && !machine.sends(future)) {
-                machine.drop(c, CancelReason::disengaged, "switched off");
-            }
-        });
-    }
-
-    void finish(const Context& c) {
-        machines.each([&](auto& machine) { machine.finish(c); });
-    }
+    void switch_off(const Context& c, const GestureSettings& future);
+    void finish(const Context& c);
 
     /// A gesture of this hand is active.
-    [[nodiscard]] bool holds() {
-        bool any = false;
-        machines.each([&](const auto& machine) { any = any || machine.holds(); });
-        return any;
-    }
+    [[nodiscard]] bool holds();
+    /// What it holds on with, of the gestures that a drag can come from.
+    [[nodiscard]] Grip grip(const GestureSettings& settings) const;
+    /// The fingers hold, whoever has the hand: for gestures of two hands.
+    [[nodiscard]] Grip fingers() const;
 
     /// The newest sample goes through all machines that are wanted.
-    void update(Context& c) {
-        Rank strongest = Rank::none;
-        const void* holder = nullptr;
-        const auto take = [&](const auto& machine) {
-            if (machine.kRank < strongest) {
-                strongest = machine.kRank;
-                holder = &machine;
-            }
-        };
-        machines.each([&](const auto& machine) {
-            if (machine.holds()) {
-                take(machine);
-            }
-        });
-        machines.each([&](auto& machine) {
-            if (!machine.wanted(c.settings)) {
-                return;
-            }
-            const std::size_t before = c.out.all().size();
-            c.taken =
-                strongest < machine.kRank || (strongest == machine.kRank && holder != &machine);
-            machine.update(c);
-            if (machine.holds() || c.out.all().size() != before) {
-                take(machine);
-            }
-            // A first stroke may become either; who has turned back twice does not swipe.
-            if (machine.kRank == Rank::rhythm && machines.wave.swings()) {
-                strongest = std::min(strongest, Rank::grip);
-            }
-        });
-    }
+    /// @param two_handed a gesture of two hands has it
+    void update(Context& c, bool two_handed);
 };
 
 }  // namespace xtrack::recognise

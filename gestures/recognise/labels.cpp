@@ -5,6 +5,8 @@
 #include <array>
 #include <iterator>
 
+#include <xtrack/gesture_event.hpp>
+
 #include "core/base/csv.hpp"
 #include "core/base/file.hpp"
 #include "core/base/text.hpp"
@@ -20,36 +22,23 @@ constexpr double kMaxPosition_mm = 1e5;
 constexpr std::int64_t kMaxFrames = 1'000'000;
 constexpr const char* kFingers[kFingerCount] = {"thumb", "index", "middle", "ring", "little"};
 
-/// What a label may say. A bare `swipe` is one in any direction.
-constexpr std::string_view kGestures[] = {"swipe",
-                                          "swipe_left",
-                                          "swipe_right",
-                                          "swipe_up",
-                                          "swipe_down",
-                                          "push",
-                                          "pull",
-                                          "pinch",
-                                          "grab",
-                                          "dwell",
-                                          "wave",
-                                          "circle",
-                                          "raise",
-                                          "tap",
-                                          "two_hand_zoom",
-                                          "two_hand_rotate",
-                                          "open_palm",
-                                          "fist",
-                                          "point",
-                                          "victory",
-                                          "thumb_up",
-                                          "thumb_down",
-                                          "press",
-                                          "touch",
-                                          "drag",
-                                          "double_pinch",
-                                          "double_tap",
-                                          "circle_clockwise",
-                                          "circle_counterclockwise"};
+/// What a label may say: the name of any event. A bare `swipe` is one in any direction.
+std::vector<std::string> known_gestures() {
+    std::vector<std::string> names;
+    for (std::size_t t = 0; t < kGestureTypeCount; ++t) {
+        GestureEvent event;
+        event.type = static_cast<GestureType>(t);
+        if (event.type == GestureType::hand || event.type == GestureType::engage) {
+            continue;
+        }
+        names.push_back(name_of(event));
+        for (const Direction direction : directions_of(event.type)) {
+            event.direction = direction;
+            names.push_back(name_of(event));
+        }
+    }
+    return names;
+}
 constexpr std::string_view kNotOurs = "x_";
 
 bool is_word(std::string_view text) {
@@ -61,14 +50,15 @@ bool is_word(std::string_view text) {
 
 /// A name that is misspelt would count as a gesture that nobody asked for, and its events as false.
 bool is_gesture(std::string_view name) {
+    static const std::vector<std::string> kKnown = known_gestures();
     return (name.starts_with(kNotOurs) && name.size() > kNotOurs.size() && is_word(name)) ||
-           std::find(std::begin(kGestures), std::end(kGestures), name) != std::end(kGestures);
+           std::ranges::find(kKnown, name) != kKnown.end();
 }
 
 std::string gesture_wanted() {
     std::string names = "give ";
-    for (const std::string_view name : kGestures) {
-        names += std::string(name) + ", ";
+    for (const std::string& name : known_gestures()) {
+        names += name + ", ";
     }
     return names + "or x_ and a name of your own";
 }

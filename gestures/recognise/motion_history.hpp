@@ -21,6 +21,7 @@ struct MotionSample {
     Stamp stamp;
     Duration span = Duration::zero();  ///< over which it was measured; 0 = not known
     Vec3f palm_mm = Vec3f::Zero();
+    Vec3f pointer_mm = Vec3f::Zero();  ///< the palm through a 1-euro filter
     Vec3f index_tip_mm = Vec3f::Zero();
     bool index_tip_known = false;
     Vec3f facing = Vec3f::Zero();  ///< unit, out of the palm; zero where no joints say it

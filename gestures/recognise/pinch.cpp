@@ -34,6 +34,8 @@ constexpr double kApproachShare = 0.65;
 // Five images at 60 Hz, or a depth camera at 15 Hz.
 constexpr Duration kUsualSpan = std::chrono::nanoseconds{1'000'000'000 / 15};
 constexpr double kSmallestWayMm = 1.0;
+// A pinch that must open by more than this would not open any more.
+constexpr double kMostNoiseMm = 6.0;
 constexpr double kCapShare = 1.25;  // of pinch_close_mm: a hand length may be measured badly
 
 double aperture_of(const MotionHistory& history) {
@@ -125,6 +127,13 @@ double approach_seen(const MotionHistory& history, Stamp closed_at, const Gestur
     return all > 0 ? static_cast<double>(seen) / all : 0.0;
 }
 
+/// Three sigma above what closes, by the noise that the hand itself shows. The aperture is a mean.
+double release_mm(const Context& c) {
+    const GestureSettings& s = c.settings;
+    return s.pinch_close_mm + Signal::apart(s.pinch_release_mm - s.pinch_close_mm,
+                                            std::min(c.signal.aperture_noise_mm, kMostNoiseMm));
+}
+
 double close_mm(const Context& c) {
     const double by_hand_mm =
         c.settings.pinch_close_share * static_cast<double>(c.history.newest().hand_length_mm);
@@ -208,6 +217,7 @@ void PinchMachine::finish(const Context& c) {
 
 void PinchMachine::handle(const Context& c, Event event, const Refusal& refusal,
                           CancelReason reason) {
+    broke_ = event == Event::dropped ? reason : CancelReason::none;
     reporter_.report(c, step(state_, event, next(c, event, reason)), refusal,
                      [](auto of) { return name(of); });
 }
@@ -331,7 +341,7 @@ PinchMachine::Event PinchMachine::judge(const Context& c, double aperture_mm,
     const GestureSettings& s = c.settings;
     const bool together = state_ == State::touching || closed();
     if (together) {
-        if (aperture_mm >= s.pinch_release_mm) {
+        if (aperture_mm >= release_mm(c)) {
             return Event::released;
         }
         if (closed()) {
@@ -339,7 +349,7 @@ PinchMachine::Event PinchMachine::judge(const Context& c, double aperture_mm,
         }
         const double held_ms = to_ms(c.sensor - closed_at_);
         // A graze that opens again is inside the hysteresis, but on its way out.
-        const double inner_mm = 0.5 * (s.pinch_close_mm + s.pinch_release_mm);
+        const double inner_mm = 0.5 * (s.pinch_close_mm + release_mm(c));
         if (held_ms < s.pinch_hold_ms || aperture_mm > inner_mm) {
             return Event::closed;
         }
@@ -361,7 +371,7 @@ PinchMachine::Event PinchMachine::judge(const Context& c, double aperture_mm,
         refusal = spoiler(c);
         return *refusal.why == '\0' ? Event::held : Event::spoilt;
     }
-    if (aperture_mm >= s.pinch_open_mm) {
+    if (aperture_mm >= std::max(s.pinch_open_mm, release_mm(c))) {
         return Event::opened;
     }
     if (state_ == State::armed && to_ms(c.sensor - open_at_) > s.pinch_approach_ms) {

@@ -33,6 +33,8 @@ class PinchMachine {
     [[nodiscard]] bool closed() const noexcept {
         return state_ == State::pinched || state_ == State::carried;
     }
+    /// Why they last came apart, if they were not opened.
+    [[nodiscard]] CancelReason broke() const noexcept { return broke_; }
 
  private:
     enum class State { away, armed, touching, pinched, carried, spoilt };
@@ -73,6 +75,7 @@ class PinchMachine {
     Stamp onset_;        ///< of the pinch that is active
     Stamp aperture_at_;  ///< newest sample with a known aperture
     int gesture_id_ = -1;
+    CancelReason broke_ = CancelReason::none;
 };
 
 }  // namespace xtrack::recognise

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 //            thrust (begin and end are sent)
-//  waiting ─────────────────────────────────▶ recovering
+//  waiting ─────────────────────────────────▶ recovering ⟲ thrust: the one before was its wind-up
 //     ▲                                           │ stable, dropped
 //     └───────────────────────────────────────────┘
 //
-// A thrust is judged over a whole window, so there is no candidate state: before the window is full
-// of it, nothing is known. Recovering is the way back, until the hand has been still.
+// A thrust, toward the screen or away from it, is judged over a whole window, so there is no
+// candidate state: before the window is full of it, nothing is known. Recovering is the way back,
+// until the hand has been still.
 #include "gestures/recognise/push.hpp"
 
 #include <algorithm>
@@ -21,6 +22,12 @@ constexpr float kConfidenceFloor = 0.5F;
 // The window holds whole frames only; this much of it must be covered.
 constexpr double kCoverShare = 0.75;
 constexpr Duration kThrustBefore = std::chrono::milliseconds{300};
+// A thrust that is this much faster than the one it undoes is the gesture, that one its wind-up.
+constexpr double kWindUpShare = 1.2;
+
+Vec3f axis_of(GestureType type) {
+    return {0.0F, 0.0F, type == GestureType::push ? -1.0F : 1.0F};  // z is from the screen
+}
 
 double angle_deg(const Vec3f& a, const Vec3f& b) {
     const double norms = static_cast<double>(a.norm()) * static_cast<double>(b.norm());
@@ -54,22 +61,32 @@ const char* PushMachine::name(Event e) {
 void PushMachine::update(const Context& c) {
     const Stamp now = c.history.newest().stamp;
     const Vec3f velocity = c.history.velocity(from_ms(c.settings.velocity_window_ms));
-    const bool slow = static_cast<double>(velocity.norm()) < c.settings.push_stable_mmps;
+    const bool slow =
+        static_cast<double>(velocity.norm()) <
+        c.signal.still_mmps(c.settings.push_stable_mmps, from_ms(c.settings.velocity_window_ms));
     if (slow && !slow_) {
         stable_since_ = now;
     }
     slow_ = slow;
-    if (state_ == State::recovering) {
-        const bool stable = slow_ && to_ms(now - stable_since_) >= c.settings.push_stable_ms;
-        handle(c, stable ? Event::stable : Event::moving);
-        return;
-    }
     if (c.gate != Gate::open || c.taken) {
         not_before_ = now;
+        if (state_ == State::waiting) {
+            return;
+        }
+    }
+    if (state_ == State::recovering && slow_ &&
+        to_ms(now - stable_since_) >= c.settings.push_stable_ms) {
+        handle(c, Event::stable);
         return;
     }
     thrust_ = measure(c);
+    if (state_ == State::recovering && *thrust_.refusal.why == '\0' && !undoes(thrust_)) {
+        thrust_.refusal = {"the way back", thrust_.speed_mmps, kWindUpShare * last_.speed_mmps};
+    }
     handle(c, *thrust_.refusal.why == '\0' ? Event::thrust : Event::moving, thrust_.refusal);
+    if (state_ == State::recovering && thrust_.type == last_.type) {
+        last_.speed_mmps = std::max(last_.speed_mmps, thrust_.speed_mmps);
+    }
 }
 
 void PushMachine::drop(const Context& c, CancelReason /*reason*/, const char* why) {
@@ -102,14 +119,19 @@ std::optional<PushMachine::State> PushMachine::waiting(const Context& c, Event e
     return std::nullopt;
 }
 
-std::optional<PushMachine::State> PushMachine::recovering(const Context& /*c*/, Event event) {
+std::optional<PushMachine::State> PushMachine::recovering(const Context& c, Event event) {
     switch (event) {
+        case Event::thrust: commit(c); return State::recovering;
         case Event::moving: return State::recovering;
         case Event::stable:
         case Event::dropped: return State::waiting;
-        case Event::thrust: break;
     }
     return std::nullopt;
+}
+
+/// A thrust against the one before is its way back, unless that one was a wind-up.
+bool PushMachine::undoes(const Thrust& thrust) const {
+    return thrust.type != last_.type && thrust.speed_mmps >= kWindUpShare * last_.speed_mmps;
 }
 
 PushMachine::Thrust PushMachine::measure(const Context& c) const {
@@ -126,13 +148,18 @@ PushMachine::Thrust PushMachine::measure(const Context& c) const {
         return t;
     }
     const Vec3f moved = now.palm_mm - then.palm_mm;
-    const Vec3f toward_screen{0.0F, 0.0F, -1.0F};
-    t.speed_mmps = static_cast<double>(moved.dot(toward_screen)) / (lasted_ms * 1e-3);
+    t.type = moved.z() < 0.0F ? GestureType::push : GestureType::pull;
+    const Vec3f axis = axis_of(t.type);
+    t.speed_mmps = static_cast<double>(moved.dot(axis)) / (lasted_ms * 1e-3);
+    if (!is_wanted(s, t.type)) {
+        t.refusal = {"switched off", 0.0, 0.0};
+        return t;
+    }
     if (t.speed_mmps < s.push_speed_mmps) {
         t.refusal = {"slow", t.speed_mmps, s.push_speed_mmps};
         return t;
     }
-    const double off_deg = angle_deg(moved, toward_screen);
+    const double off_deg = angle_deg(moved, axis);
     if (off_deg > s.push_cone_deg) {
         t.refusal = {"off the normal", off_deg, s.push_cone_deg};
         return t;
@@ -142,19 +169,24 @@ PushMachine::Thrust PushMachine::measure(const Context& c) const {
     std::size_t start = first;
     while (start + 1 < c.history.size() &&
            then.stamp - c.history.at(start + 1).stamp <= kThrustBefore &&
-           static_cast<double>(
-               c.history.velocity(from_ms(s.velocity_window_ms), start).dot(toward_screen)) >
+           static_cast<double>(c.history.velocity(from_ms(s.velocity_window_ms), start).dot(axis)) >
                s.push_stable_mmps) {
         ++start;
     }
     t.start = c.history.at(start).stamp;
+    const auto length_mm =
+        static_cast<double>((now.palm_mm - c.history.at(start).palm_mm).dot(axis));
+    if (t.type == GestureType::pull && length_mm < s.pull_length_mm) {
+        t.refusal = {"short", length_mm, s.pull_length_mm};
+        return t;
+    }
     const Vec3f before = c.history.velocity(from_ms(s.velocity_window_ms), start);
     const double turned_deg = angle_deg(before, moved);
     if (static_cast<double>(before.norm()) > s.push_stable_mmps && turned_deg < s.push_turn_deg) {
         t.refusal = {"goes on with the motion before", turned_deg, s.push_turn_deg};
         return t;
     }
-    if (now.facing.norm() > 0.0F) {
+    if (t.type == GestureType::push && now.facing.norm() > 0.0F) {
         const float toward = -now.facing.z();
         const double faces = static_cast<double>(now.facing_signed ? toward : std::abs(toward));
         if (faces < s.push_facing) {
@@ -166,7 +198,8 @@ PushMachine::Thrust PushMachine::measure(const Context& c) const {
 
 void PushMachine::commit(const Context& c) {
     slow_ = false;
-    GestureEvent e = event_of(c, GestureType::push, EventPhase::begin);
+    last_ = thrust_;
+    GestureEvent e = event_of(c, thrust_.type, EventPhase::begin);
     e.gesture_id = c.next_gesture_id++;
     e.onset = thrust_.start;
     e.progress = 1.0F;

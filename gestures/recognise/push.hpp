@@ -8,11 +8,12 @@
 
 namespace xtrack::recognise {
 
-/// One push machine a hand. The diagram is in docs/gestures/push.md and in push.cpp.
+/// Pushes and pulls of one hand, in one machine, because the way back from one is the way of the
+/// other. The diagram is in docs/gestures/push.md and in push.cpp.
 class PushMachine {
  public:
     static constexpr Rank kRank = Rank::stroke;
-    [[nodiscard]] static bool wanted(const GestureSettings& s) noexcept { return s.push; }
+    [[nodiscard]] static bool wanted(const GestureSettings& s) noexcept { return s.push || s.pull; }
     [[nodiscard]] bool holds() const noexcept { return false; }
     [[nodiscard]] static bool sends(const GestureSettings& s) noexcept { return wanted(s); }
 
@@ -27,6 +28,7 @@ class PushMachine {
     enum class Event { thrust, moving, stable, dropped };
 
     struct Thrust {
+        GestureType type = GestureType::push;
         Stamp start;
         double speed_mmps = 0.0;
         Refusal refusal;  ///< why it is none
@@ -41,10 +43,12 @@ class PushMachine {
     std::optional<State> recovering(const Context& c, Event event);
 
     [[nodiscard]] Thrust measure(const Context& c) const;
+    [[nodiscard]] bool undoes(const Thrust& thrust) const;
     void commit(const Context& c);
 
     State state_ = State::waiting;
     Thrust thrust_;
+    Thrust last_;  ///< the one that committed, its speed the fastest that it came to
     Reporter reporter_{"push"};
     Stamp not_before_;    ///< samples before it are not looked at: the hand was gated
     Stamp stable_since_;  ///< valid while `slow_`

@@ -47,11 +47,10 @@ bool is_gesture(GestureType type) {
 }
 
 /// `_left` and the like.
-bool is_direction(std::string_view text) {
-    constexpr std::array kAll{Direction::left, Direction::right,     Direction::up,
-                              Direction::down, Direction::clockwise, Direction::counterclockwise};
-    return text.starts_with('_') &&
-           std::ranges::any_of(kAll, [&](Direction d) { return text.substr(1) == to_string(d); });
+bool is_direction(GestureType type, std::string_view text) {
+    return text.starts_with('_') && std::ranges::any_of(directions_of(type), [&](Direction d) {
+               return text.substr(1) == to_string(d);
+           });
 }
 
 /// A gesture of a stream, from begin to its last event.
@@ -179,7 +178,7 @@ bool GestureScorer::scored(std::string_view name) const {
         const auto type = static_cast<GestureType>(t);
         const std::string_view word = to_string(type);
         if (is_gesture(type) && is_wanted(settings_, type) && name.starts_with(word) &&
-            (name.size() == word.size() || is_direction(name.substr(word.size())))) {
+            (name.size() == word.size() || is_direction(type, name.substr(word.size())))) {
             return true;
         }
     }

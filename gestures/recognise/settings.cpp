@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -30,6 +31,11 @@ void set(GestureSettings& settings, double value) {
 template <auto kMember>
 constexpr GestureField toggle(const char* name) {
     return {name, 0.0, 1.0, true, true, get<kMember>, set<kMember>};
+}
+/// A switch that is no gesture's.
+template <auto kMember>
+constexpr GestureField rule(const char* name) {
+    return {name, 0.0, 1.0, false, true, get<kMember>, set<kMember>};
 }
 template <auto kMember>
 constexpr GestureField number(const char* name, double least, double most) {
@@ -72,6 +78,27 @@ constexpr std::array kFields{
     number<&S::gone_ms>("gone_ms", 120.0, 2000.0),
     number<&S::entry_lockout_ms>("entry_lockout_ms", 0.0, 2000.0),
     number<&S::velocity_window_ms>("velocity_window_ms", 60.0, 200.0),
+    number<&S::silence_fist>("silence_fist", 0.5, 1.0),
+    number<&S::silence_ms>("silence_ms", 100.0, 3000.0),
+    number<&S::silence_open>("silence_open", 0.0, 0.95),
+    number<&S::zone_left_mm>("zone_left_mm", -3000.0, 3000.0),
+    number<&S::zone_right_mm>("zone_right_mm", -3000.0, 3000.0),
+    number<&S::zone_bottom_mm>("zone_bottom_mm", -3000.0, 3000.0),
+    number<&S::zone_top_mm>("zone_top_mm", -3000.0, 3000.0),
+    number<&S::zone_near_mm>("zone_near_mm", -3000.0, 3000.0),
+    number<&S::zone_far_mm>("zone_far_mm", -3000.0, 3000.0),
+    number<&S::zone_margin_mm>("zone_margin_mm", 0.0, 200.0),
+    rule<&S::engage_by_stillness>("engage_by_stillness"),
+    rule<&S::engage_by_wave>("engage_by_wave"),
+    rule<&S::engage_by_raise>("engage_by_raise"),
+    number<&S::engage_still_mmps>("engage_still_mmps", 20.0, 500.0),
+    number<&S::engage_ms>("engage_ms", 50.0, 3000.0),
+    number<&S::engage_leave_ms>("engage_leave_ms", 50.0, 3000.0),
+    number<&S::engage_idle_ms>("engage_idle_ms", 1000.0, 600000.0),
+    number<&S::engage_idle_mm>("engage_idle_mm", 5.0, 300.0),
+    number<&S::body_width_mm>("body_width_mm", 100.0, 2000.0),
+    number<&S::body_height_mm>("body_height_mm", 100.0, 2000.0),
+    number<&S::body_depth_mm>("body_depth_mm", 100.0, 2000.0),
     number<&S::swipe_speed_mmps>("swipe_speed_mmps", 100.0, 3000.0),
     number<&S::swipe_paddle_speed_mmps>("swipe_paddle_speed_mmps", 100.0, 3000.0),
     number<&S::swipe_length_mm>("swipe_length_mm", 40.0, 600.0),
@@ -99,6 +126,7 @@ constexpr std::array kFields{
     number<&S::push_stable_mmps>("push_stable_mmps", 20.0, 500.0),
     number<&S::push_stable_ms>("push_stable_ms", 0.0, 2000.0),
     number<&S::push_facing>("push_facing", 0.0, 1.0),
+    number<&S::pull_length_mm>("pull_length_mm", 40.0, 600.0),
     number<&S::pinch_close_mm>("pinch_close_mm", 5.0, 40.0),
     number<&S::pinch_close_share>("pinch_close_share", 0.0, 0.3),
     number<&S::pinch_release_mm>("pinch_release_mm", 10.0, 80.0),
@@ -114,6 +142,29 @@ constexpr std::array kFields{
     number<&S::pinch_bunch_mm>("pinch_bunch_mm", 0.0, 60.0),
     number<&S::pinch_bunch_extension>("pinch_bunch_extension", 0.0, 1.0),
     number<&S::pinch_index_share>("pinch_index_share", 0.0, 0.9),
+    number<&S::press_slow_mmps>("press_slow_mmps", 20.0, 1000.0),
+    number<&S::press_slow_way_mm>("press_slow_way_mm", 5.0, 200.0),
+    number<&S::press_fast_mmps>("press_fast_mmps", 20.0, 1000.0),
+    number<&S::press_fast_way_mm>("press_fast_way_mm", 5.0, 200.0),
+    number<&S::press_cone_deg>("press_cone_deg", 5.0, 85.0),
+    number<&S::press_cone_without_drag_deg>("press_cone_without_drag_deg", 5.0, 85.0),
+    number<&S::press_decay_mm>("press_decay_mm", 10.0, 500.0),
+    number<&S::press_up_force>("press_up_force", 0.5, 0.99),
+    number<&S::press_rearm_force>("press_rearm_force", 0.0, 0.95),
+    number<&S::press_most_ms>("press_most_ms", 200.0, 60000.0),
+    number<&S::touch_plane_mm>("touch_plane_mm", -2000.0, 2000.0),
+    number<&S::touch_mm>("touch_mm", 5.0, 300.0),
+    number<&S::touch_release_mm>("touch_release_mm", 10.0, 400.0),
+    number<&S::touch_progress_mm>("touch_progress_mm", 20.0, 1000.0),
+    number<&S::dwell_radius_mm>("dwell_radius_mm", 1.0, 50.0),
+    number<&S::dwell_still_ms>("dwell_still_ms", 100.0, 3000.0),
+    number<&S::dwell_fill_ms>("dwell_fill_ms", 100.0, 2000.0),
+    number<&S::dwell_cancel_mm>("dwell_cancel_mm", 2.0, 100.0),
+    number<&S::dwell_rearm_mm>("dwell_rearm_mm", 2.0, 200.0),
+    number<&S::drag_mm>("drag_mm", 3.0, 200.0),
+    number<&S::drag_grab_mm>("drag_grab_mm", 3.0, 200.0),
+    number<&S::two_hand_zoom_mm>("two_hand_zoom_mm", 5.0, 200.0),
+    number<&S::two_hand_rotate_deg>("two_hand_rotate_deg", 2.0, 90.0),
     whole<&S::wave_turns>("wave_turns", 2.0, 12.0),
     number<&S::wave_within_ms>("wave_within_ms", 300.0, 5000.0),
     number<&S::wave_stroke_mm>("wave_stroke_mm", 20.0, 300.0),
@@ -149,6 +200,16 @@ Error refusal(const GestureField& field, const std::string& value) {
                   (field.whole && !field.is_switch ? "a whole number from " : "") + range);
 }
 
+/// Of a field that is a number.
+std::string name_of(double S::*member) {
+    // Fields are functions: the one that reads what was written here is the field.
+    S probe;
+    probe.*member = std::numeric_limits<double>::infinity();
+    const auto* field = std::ranges::find_if(
+        kFields, [&](const GestureField& one) { return std::isinf(one.get(probe)); });
+    return field->name;
+}
+
 std::optional<double> value_of(const GestureField& field, std::string_view text) {
     if (field.is_switch && (text == "on" || text == "off")) {
         return text == "on" ? 1.0 : 0.0;
@@ -167,7 +228,7 @@ GestureDemands demands_of(const GestureSettings& settings) noexcept {
     if (settings.swipe) {
         demands.hand_mmps = std::max(demands.hand_mmps, settings.swipe_speed_mmps);
     }
-    if (settings.push) {
+    if (settings.push || settings.pull) {
         demands.hand_mmps = std::max(demands.hand_mmps, settings.push_speed_mmps);
     }
     if (settings.pinch) {
@@ -248,6 +309,32 @@ Result<void> validate(const GestureSettings& s) {
     if (s.pinch_open_mm < s.pinch_release_mm) {
         return refuse("pinch_open_mm is " + text(s.pinch_open_mm) +
                       "; give at least pinch_release_mm, " + text(s.pinch_release_mm));
+    }
+    struct Order {
+        double S::*less;
+        double S::*more;
+    };
+    constexpr std::array kOrders{
+        Order{&S::silence_open, &S::silence_fist},
+        Order{&S::zone_left_mm, &S::zone_right_mm},
+        Order{&S::zone_bottom_mm, &S::zone_top_mm},
+        Order{&S::zone_near_mm, &S::zone_far_mm},
+        Order{&S::press_slow_mmps, &S::press_fast_mmps},
+        Order{&S::press_fast_way_mm, &S::press_slow_way_mm},
+        Order{&S::press_rearm_force, &S::press_up_force},
+        Order{&S::touch_mm, &S::touch_release_mm},
+        Order{&S::touch_release_mm, &S::touch_progress_mm},
+        Order{&S::dwell_radius_mm, &S::dwell_cancel_mm},
+        Order{&S::dwell_cancel_mm, &S::dwell_rearm_mm},
+    };
+    for (const Order& order : kOrders) {
+        if (!(s.*order.less < s.*order.more)) {
+            return refuse(name_of(order.less) + " is " + text(s.*order.less) + "; give less than " +
+                          name_of(order.more) + ", " + text(s.*order.more));
+        }
+    }
+    if (s.drag && !s.pinch && !s.grab && !s.press) {
+        return refuse("drag is on; switch pinch, grab or press on, which it goes on from");
     }
     if (s.gone_ms < s.lost_freeze_ms) {
         return refuse("gone_ms is " + text(s.gone_ms) + "; give at least lost_freeze_ms, " +

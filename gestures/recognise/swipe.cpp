@@ -393,7 +393,8 @@ void SwipeMachine::commit(const Context& c) {
 }
 
 void SwipeMachine::note_rest(const Context& c, const Vec3f& velocity) {
-    if (static_cast<double>(velocity.norm()) < c.settings.swipe_rest_mmps) {
+    if (static_cast<double>(velocity.norm()) <
+        c.signal.still_mmps(c.settings.swipe_rest_mmps, from_ms(c.settings.velocity_window_ms))) {
         rested_since_ = true;
     }
 }

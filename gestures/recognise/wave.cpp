@@ -116,7 +116,9 @@ Refusal WaveMachine::off_axis(const Context& c) const {
 
 void WaveMachine::watch_rest(const Context& c) {
     const Vec3f velocity = c.history.velocity(from_ms(c.settings.velocity_window_ms));
-    const bool still = static_cast<double>(velocity.norm()) < c.settings.wave_rest_mmps;
+    const bool still =
+        static_cast<double>(velocity.norm()) <
+        c.signal.still_mmps(c.settings.wave_rest_mmps, from_ms(c.settings.velocity_window_ms));
     if (still && !still_) {
         still_since_ = c.history.newest().stamp;
     }

@@ -14,9 +14,12 @@ namespace xtrack::recognise {
 class WaveMachine {
  public:
     static constexpr Rank kRank = Rank::rhythm;
-    [[nodiscard]] static bool wanted(const GestureSettings& s) noexcept { return s.wave; }
+    static constexpr bool kSummons = true;  ///< it can take an idle session
+    [[nodiscard]] static bool wanted(const GestureSettings& s) noexcept {
+        return s.wave || (s.engage && s.engage_by_wave);
+    }
+    [[nodiscard]] static bool sends(const GestureSettings& s) noexcept { return s.wave; }
     [[nodiscard]] bool holds() const noexcept { return false; }
-    [[nodiscard]] static bool sends(const GestureSettings& s) noexcept { return wanted(s); }
 
     /// A new sample is in the history.
     void update(const Context& c);

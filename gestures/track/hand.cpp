@@ -38,6 +38,7 @@ HandFrame to_interaction(const HandFrame& camera, const Mat4d& interaction_from_
         hand.palm_mm = transform(m, hand.palm_mm);
         hand.palm_normal = rotate(m, hand.palm_normal);
         hand.palm_velocity_mmps = rotate(m, hand.palm_velocity_mmps);
+        hand.forearm = rotate(m, hand.forearm);
         for (TrackedPoint& tip : hand.fingertips) {
             tip.position_mm = transform(m, tip.position_mm);
         }

@@ -122,6 +122,12 @@ bool complete_from_joints(Hand& hand) noexcept {
         return false;
     }
     hand.palm_normal = palm_facing(hand);
+    // A wrist bends, yet nothing else says where the elbow is.
+    hand.forearm = Vec3f::Zero();
+    if (known(hand, Joint::wrist)) {
+        const Vec3f back = hand.joint(Joint::wrist).position_mm - hand.palm_mm;
+        hand.forearm = back.norm() > 1.0F ? Vec3f(back.normalized()) : hand.forearm;
+    }
     if (known(hand, Joint::index_proximal) && known(hand, Joint::little_proximal)) {
         hand.palm_radius_mm =
             kRadiusOfKnuckleSpan * (hand.joint(Joint::little_proximal).position_mm -

@@ -145,6 +145,7 @@ void HandTrack::update(Stamp stamp, const HandRegion& region, const Vec3f& norma
     hand.palm_radius_mm = region.palm_radius_mm;
     hand.palm_normal = normal;
     hand.palm_velocity_mmps = velocity_mmps_;
+    hand.forearm = arm_direction_;
     const int side = thumb_side();
     weigh_chirality(region, fingers, seconds, hand);
     finger_tracks_.update(stamp, region, side, fingers);

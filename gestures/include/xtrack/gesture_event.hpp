@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -80,6 +81,10 @@ inline constexpr std::size_t kGestureTypeCount = 25;
 /// As the user sees it; turns as the user sees them, too.
 /// @since 0.1
 enum class Direction : std::uint8_t { none, left, right, up, down, clockwise, counterclockwise };
+
+/// Those that events of a type can have; none for most. @ownership static @thread any
+/// @since 0.1
+[[nodiscard]] std::span<const Direction> directions_of(GestureType t) noexcept;
 
 /// One-shot gestures give begin and end in the deciding frame; those with a life give begin,
 /// update*, then end or cancel. What a gesture is never changes during its life.

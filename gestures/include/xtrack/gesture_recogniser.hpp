@@ -80,6 +80,13 @@ class GestureRecogniser {
     /// What became of the frame of the last push().
     [[nodiscard]] RecogniseStatus status() const noexcept;
 
+    /// How far a gesture has come that has not begun: press (the virtual force) and touch; 0..1, 0
+    /// for others and for a hand that is not there.
+    [[nodiscard]] double progress(int hand_id, GestureType type) const noexcept;
+
+    /// The hand that owns the session (GestureSettings::engage); 0: nobody's.
+    [[nodiscard]] int session_owner() const noexcept;
+
     /// Lets time pass without a frame, so that a lost hand is noticed: call it at 50 Hz or more
     /// when no frames come. `now` is on the frames' clock; one before the last frame does nothing.
     /// @return as push(); `sensor` is the last frame's stamp, `emit` is `now`

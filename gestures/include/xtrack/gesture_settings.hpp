@@ -55,6 +55,39 @@ struct GestureSettings {
     /// Window of the line fit that gives velocity. 60..200. Less is noise, more is lag.
     double velocity_window_ms = 100.0;
 
+    /// A fist that lasts says nothing more, where grab, fist and two-hand gestures are off: from so
+    /// much of a fist, for so long, until it is this open again. 0.5..1; 100..3000; 0..0.95.
+    double silence_fist = 0.8;
+    double silence_ms = 500.0;
+    double silence_open = 0.65;
+
+    // --- whose session ---------------------------------------------------------------------------
+    /// Where hands are listened to while `engage` is on: interaction frame, palm. -3000..3000.
+    double zone_left_mm = -500.0;
+    double zone_right_mm = 500.0;
+    double zone_bottom_mm = -350.0;
+    double zone_top_mm = 450.0;
+    double zone_near_mm = 100.0;
+    double zone_far_mm = 1000.0;
+    double zone_margin_mm = 20.0;  ///< to leave it. 0..200. NiTE1's sessions.
+    /// What takes a session that is nobody's: being still in the zone, waving, raising. NiTE1.
+    bool engage_by_stillness = true;
+    bool engage_by_wave = true;
+    bool engage_by_raise = true;
+    /// Slower than this for so long is still; as long until a second hand joins. 20..500; 50..3000.
+    double engage_still_mmps = 200.0;
+    double engage_ms = 300.0;
+    /// Outside for so long, or idle (no gesture, moved by less) for so long, and it is over.
+    /// 50..3000; 1000..600000; 5..300. NiTE1.
+    double engage_leave_ms = 300.0;
+    double engage_idle_ms = 15000.0;
+    double engage_idle_mm = 40.0;
+    /// Elbows of one body lie no farther apart: to the side, up, and in depth. 100..2000. Shoulders
+    /// of adults are 400 wide, and elbows spread beside them.
+    double body_width_mm = 750.0;
+    double body_height_mm = 300.0;
+    double body_depth_mm = 300.0;
+
     // --- swipe -----------------------------------------------------------------------------------
     /// Mean over the stroke. 100..3000. NiTE1 250, TouchFree 625.
     double swipe_speed_mmps = 300.0;
@@ -100,7 +133,7 @@ struct GestureSettings {
     /// The index tip's share of the palm's way, as second vote. 0..1.
     double swipe_tip_share = 0.5;
 
-    // --- push ------------------------------------------------------------------------------------
+    // --- push, pull ------------------------------------------------------------------------------
     /// Mean speed over the window. 100..3000; 100..600. NiTE1 has 330; hands that reach out to
     /// begin something else come to 350.
     double push_speed_mmps = 370.0;
@@ -115,6 +148,9 @@ struct GestureSettings {
     double push_stable_ms = 360.0;
     /// As swipe_facing, for the palm toward the screen. 0..1.
     double push_facing = 0.5;
+    /// A pull goes at least so far, because hands draw back to rest after whatever they
+    /// did. 40..600. Measured: hands that draw back 100..130, a pull 300.
+    double pull_length_mm = 150.0;
 
     // --- pinch -----------------------------------------------------------------------------------
     /// Thumb tip to index tip, or the share of the hand's length if that is more. 5..40; 0..0.3.
@@ -153,6 +189,53 @@ struct GestureSettings {
     /// The index does its share of the way that brings the tips together. 0..0.9. Measured: pinches
     /// 0.5..0.85, thumbs that fold in front of the palm 0.1..0.3.
     double pinch_index_share = 0.25;
+
+    // --- press -----------------------------------------------------------------------------------
+    /// The way toward the screen that makes a virtual force of 1: at the slow speed, at the fast
+    /// one and above, quadratic between; slower adds nothing. 20..1000; 5..200. TouchFree AirPush.
+    double press_slow_mmps = 150.0;
+    double press_slow_way_mm = 42.0;
+    double press_fast_mmps = 500.0;
+    double press_fast_way_mm = 8.0;
+    /// Off the screen's normal; without drag a press is only a click, and need not be followed
+    /// aside. 5..85. TouchFree.
+    double press_cone_deg = 65.0;
+    double press_cone_without_drag_deg = 15.0;
+    double press_decay_mm = 50.0;  ///< so far aside, and the force is gone. 10..500. TouchFree.
+    /// UP below it; again from below this. 0.5..0.99; 0..0.95. TouchFree's 0.97 and 0.87 chatter at
+    /// the noise of a webcam.
+    double press_up_force = 0.90;
+    double press_rearm_force = 0.80;
+    double press_most_ms = 1500.0;  ///< then it comes up by itself. 200..60000. TouchFree.
+
+    // --- touch -----------------------------------------------------------------------------------
+    double touch_plane_mm = 0.0;  ///< the plane, before the screen (z). -2000..2000
+    /// Nearer than this to the plane touches; release; progress counts from here. 5..300; 10..400;
+    /// 20..1000. TouchFree, with a hysteresis.
+    double touch_mm = 50.0;
+    double touch_release_mm = 60.0;
+    double touch_progress_mm = 150.0;
+
+    // --- dwell -----------------------------------------------------------------------------------
+    /// Within such a radius for so long it begins, and fills for so long. 1..50; 100..3000;
+    /// 100..2000. TouchFree.
+    double dwell_radius_mm = 5.0;
+    double dwell_still_ms = 500.0;
+    double dwell_fill_ms = 600.0;
+    /// Farther cancels; as far from a place that was dwelt on until the next. 2..100; 2..200.
+    double dwell_cancel_mm = 12.0;
+    double dwell_rearm_mm = 20.0;
+
+    // --- drag ------------------------------------------------------------------------------------
+    /// Way of a pinch or press, and of a grab, that makes a drag of it. 3..200. TouchFree.
+    double drag_mm = 30.0;
+    double drag_grab_mm = 10.0;
+
+    // --- two hands -------------------------------------------------------------------------------
+    /// Both pinch or grab, and the distance between them, or their direction, changes by so much.
+    /// 5..200; 2..90.
+    double two_hand_zoom_mm = 20.0;
+    double two_hand_rotate_deg = 10.0;
 
     // --- wave ------------------------------------------------------------------------------------
     /// So many turns of the palm, left and right, within so long. 2..12; 300..5000. NiTE1.

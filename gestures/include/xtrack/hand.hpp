@@ -71,6 +71,7 @@ struct Hand {
     float palm_radius_mm = 0.0F;        ///< of that circle; 0 = unknown
     Vec3f palm_normal = Vec3f::Zero();  ///< unit, out of the palm's seen side; 0 = unknown
     Vec3f palm_velocity_mmps = Vec3f::Zero();
+    Vec3f forearm = Vec3f::Zero();  ///< unit, from the palm toward the elbow; 0 = unknown
     /// The palm through a 1-euro filter: calm at rest, little lag in motion. For cursors; set by
     /// the Session, in the interaction frame alone.
     Vec3f pointer_mm = Vec3f::Zero();

@@ -89,11 +89,12 @@ TEST(Labels, AreTheNamesOfAllEvents) {
     for (int t = 1; to_string(static_cast<GestureType>(t)) != none; ++t) {
         GestureEvent event;
         event.type = static_cast<GestureType>(t);
+        if (event.type == GestureType::engage) {
+            continue;  // whose session it is, nobody labels
+        }
         EXPECT_EQ(message_of(name_of(event) + ",right,1,2,\n"), "");
-        for (int d = 1;
-             event.type == GestureType::swipe && to_string(static_cast<Direction>(d)) != none;
-             ++d) {
-            event.direction = static_cast<Direction>(d);
+        for (const Direction direction : directions_of(event.type)) {
+            event.direction = direction;
             EXPECT_EQ(message_of(name_of(event) + ",right,1,2,\n"), "");
         }
     }

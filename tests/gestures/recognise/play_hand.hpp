@@ -61,6 +61,8 @@ struct Actor {
     Chirality chirality = Chirality::right;
     double noise_mm = 0.0;
     float confidence = 1.0F;
+    Vec3f forearm = Vec3f::Zero();  ///< toward the elbow; zero: unknown
+    float grab = 0.0F;
 
     [[nodiscard]] At where(double ms) const {
         std::size_t i = 0;
@@ -120,6 +122,8 @@ inline Hand hand_of(const Actor& actor, const At& at, Noise& noise) {
     hand.chirality_confidence = 0.9F;
     hand.confidence = actor.confidence;
     hand.touches_border = at.border;
+    hand.forearm = actor.forearm;
+    hand.grab_value = actor.grab;
     const Vec3f shake{noise(actor.noise_mm), noise(actor.noise_mm), noise(actor.noise_mm)};
     hand.palm_mm = at.palm_mm + shake;
     const Vec3f x{1.0F, 0.0F, 0.0F};

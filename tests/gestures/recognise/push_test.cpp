@@ -26,7 +26,11 @@ TEST(Push, GoesTowardTheScreen) {
 TEST(Push, AwayFromItIsNone) {
     const Actor actor{
         {{0, at(0, 0, 300)}, {800, at(0, 0, 300)}, {1200, at(0, 0, 520)}, {2000, at(0, 0, 520)}}};
-    EXPECT_THAT(story_of(actor), IsEmpty());
+    GestureSettings settings;
+    settings.pull = false;
+    Stage stage(settings);
+    stage.play(actor, 60);
+    EXPECT_THAT(stage.story(), IsEmpty());
 }
 
 TEST(Push, SlowOrSlantingIsNone) {
@@ -76,6 +80,72 @@ TEST(Push, ThePalmFacesTheScreen) {
     EXPECT_THAT(story_of(actor), ElementsAre("push"));
     actor.held = Held::palm_down;
     EXPECT_THAT(story_of(actor), IsEmpty());
+}
+
+std::vector<std::string> pulls_and_pushes(const Actor& actor, double fps = 60) {
+    GestureSettings settings;
+    settings.pull = true;
+    Stage stage(settings);
+    stage.play(actor, fps);
+    return stage.story();
+}
+
+TEST(Pull, GoesAwayFromTheScreen) {
+    const Actor actor{
+        {{0, at(0, 0, 300)}, {800, at(0, 0, 300)}, {1200, at(0, 0, 520)}, {2000, at(0, 0, 520)}}};
+    for (const double fps : {15.0, 30.0, 60.0, 120.0}) {
+        EXPECT_THAT(pulls_and_pushes(actor, fps), ElementsAre("pull")) << fps;
+    }
+}
+
+TEST(Pull, NeedNotShowThePalm) {
+    Actor actor{
+        {{0, at(0, 0, 300)}, {800, at(0, 0, 300)}, {1200, at(0, 0, 520)}, {2000, at(0, 0, 520)}}};
+    actor.held = Held::palm_down;
+    EXPECT_THAT(pulls_and_pushes(actor), ElementsAre("pull"));
+}
+
+TEST(Pull, AHandThatDrawsBackToRestDoesNotPull) {
+    GestureSettings settings;
+    settings.pull = true;
+    Stage stage(settings);
+    stage.play(Actor{{{0, at(0, 0, 300)},
+                      {800, at(0, 0, 300)},
+                      {1050, at(0, 0, 425)},
+                      {2000, at(0, 0, 425)}}},
+               60);
+    EXPECT_THAT(stage.story(), IsEmpty());
+    EXPECT_TRUE(stage.explained("push", "short"));
+}
+
+TEST(Pull, IsNotTheWayBackOfAPush) {
+    const Actor actor{{{0, at(0, 0, 500)},
+                       {800, at(0, 0, 500)},
+                       {1200, at(0, 0, 280)},
+                       {1300, at(0, 0, 280)},
+                       {1700, at(0, 0, 500)},
+                       {2600, at(0, 0, 500)}}};
+    EXPECT_THAT(pulls_and_pushes(actor), ElementsAre("push"));
+}
+
+TEST(Pull, ItsOwnWayBackIsNoPush) {
+    const Actor actor{{{0, at(0, 0, 280)},
+                       {800, at(0, 0, 280)},
+                       {1200, at(0, 0, 500)},
+                       {1300, at(0, 0, 500)},
+                       {1700, at(0, 0, 280)},
+                       {2600, at(0, 0, 280)}}};
+    EXPECT_THAT(pulls_and_pushes(actor), ElementsAre("pull"));
+}
+
+TEST(Pull, AWindUpDoesNotBlockThePush) {
+    const Actor actor{{{0, at(0, 0, 400)},
+                       {800, at(0, 0, 400)},
+                       {1250, at(0, 0, 570)},
+                       {1550, at(0, 0, 250)},
+                       {2600, at(0, 0, 250)}}};
+    // The wind-up is as long as a pull, and one by itself.
+    EXPECT_THAT(pulls_and_pushes(actor), ElementsAre("pull", "push"));
 }
 
 }  // namespace

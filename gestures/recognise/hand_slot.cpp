@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gestures/recognise/hand_slot.hpp"
+
+#include <algorithm>
+
+namespace xtrack::recognise {
+
+void HandSlot::begin(const Hand& seen, Stamp now, bool in_view) {
+    used = true;
+    hand = seen;
+    forget_motion();
+    silence = {};
+    machines = {};
+    was_active = summons = false;
+    presence.appear(now, in_view);
+}
+
+void HandSlot::forget_motion() {
+    history.clear();
+    pointer.reset();
+    meter = {};
+}
+
+bool HandSlot::add(Stamp now, Duration span) {
+    MotionSample sample = sample_of(hand, now, span);
+    sample.pointer_mm = pointer.filter(hand.palm_mm, now);
+    if (!history.add(sample)) {
+        return false;
+    }
+    meter.update(history);
+    return true;
+}
+
+void HandSlot::drop(const Context& c, CancelReason reason, const char* why) {
+    machines.each_and_drag([&](auto& machine) { machine.drop(c, reason, why); });
+}
+
+void HandSlot::switch_off(const Context& c, const GestureSettings& future) {
+    machines.each_and_drag([&](auto& machine) {
+        if (machine.sends(c.settings) && !machine.sends(future)) {
+            machine.drop(c, CancelReason::disengaged, "switched off");
+        }
+    });
+}
+
+void HandSlot::finish(const Context& c) {
+    machines.each_and_drag([&](auto& machine) { machine.finish(c); });
+}
+
+bool HandSlot::holds() {
+    bool any = false;
+    machines.each_and_drag([&](const auto& machine) { any = any || machine.holds(); });
+    return any;
+}
+
+Grip HandSlot::fingers() const { return {machines.pinch.closed(), false, machines.pinch.broke()}; }
+
+Grip HandSlot::grip(const GestureSettings& s) const {
+    if (s.press && (machines.press.closed() || machines.press.broke() != CancelReason::none)) {
+        return {machines.press.closed(), false, machines.press.broke()};
+    }
+    return s.pinch ? fingers() : Grip{};
+}
+
+void HandSlot::update(Context& c, bool two_handed) {
+    Rank strongest = two_handed ? Rank::two_hands : Rank::none;
+    const void* holder = nullptr;
+    const auto take = [&](const auto& machine) {
+        if (machine.kRank < strongest) {
+            strongest = machine.kRank;
+            holder = &machine;
+        }
+    };
+    machines.each_and_drag([&](const auto& machine) {
+        if (machine.holds()) {
+            take(machine);
+        }
+    });
+    const Gate gate = c.gate;
+    summons = false;
+    const std::size_t first = c.out.all().size();
+    machines.each([&]<typename M>(M& machine) {
+        if (!M::wanted(c.settings)) {
+            return;
+        }
+        // A bystander may ask for the session, and is not heard otherwise.
+        constexpr bool kSummons = requires { M::kSummons; };
+        const bool asks = kSummons && gate == Gate::bystander;
+        const std::size_t before = c.out.all().size();
+        const std::size_t muted = c.out.muted_count();
+        c.gate = asks ? Gate::open : gate;
+        c.taken = strongest < M::kRank || (strongest == M::kRank && holder != &machine);
+        c.out.mute(asks);
+        machine.update(c);
+        c.out.mute(false);
+        summons = summons || c.out.muted_count() != muted;
+        if (machine.holds() || c.out.all().size() != before) {
+            take(machine);
+        }
+        // A first stroke may become either; who has turned back twice does not swipe.
+        if (M::kRank == Rank::rhythm && c.settings.wave && machines.wave.swings()) {
+            strongest = std::min(strongest, Rank::grip);
+        }
+    });
+    c.gate = gate;
+    if (c.settings.drag) {
+        const Grip held = grip(c.settings);
+        if (two_handed) {
+            machines.drag.drop(c, CancelReason::superseded, "two hands do something else");
+        } else {
+            if (machines.drag.begins(c, held)) {
+                machines.carry(c);
+            }
+            machines.drag.update(c, held);
+        }
+    }
+    was_active = holds() || c.out.all().size() != first;
+}
+
+}  // namespace xtrack::recognise
