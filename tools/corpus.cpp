@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <deque>
@@ -9,12 +11,15 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
+#include <xtrack/joint_recording.hpp>
+#include <xtrack/labels.hpp>
 
 #include "core/sim/random.hpp"
 #include "tools/commands.hpp"
@@ -66,6 +71,7 @@ struct Wanted {
 struct Job {
     std::size_t group = 0;
     std::function<Result<Tally>()> work;
+    std::function<Sequence()> make;  ///< none: images
 };
 
 Result<GestureSettings> settings_of(const CorpusOptions& options, const std::string& gestures) {
@@ -76,6 +82,7 @@ Result<GestureSettings> settings_of(const CorpusOptions& options, const std::str
     if (auto chosen = choose_gestures(gestures, settings); !chosen) {
         return chosen.error();
     }
+    settings.touch_plane_mm = corpus::touch_plane_mm();
     if (auto valid = validate(settings); !valid) {
         return valid.error();
     }
@@ -148,6 +155,39 @@ class Plan {
         }
     }
 
+    /// The first sequence of each group as a recording: joints.csv, labels.csv.
+    Result<void> save(const std::filesystem::path& folder) const {
+        for (std::size_t g = 0; g < groups_.size(); ++g) {
+            const auto job = std::find_if(jobs_.begin(), jobs_.end(), [g](const Job& j) {
+                return j.group == g && j.make != nullptr;
+            });
+            if (job == jobs_.end()) {
+                continue;
+            }
+            std::string name = fmt::format("{} {}", to_string(groups_[g].part), groups_[g].name);
+            for (char& c : name) {
+                c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
+            }
+            std::error_code error;
+            std::filesystem::create_directories(folder / name, error);
+            if (error) {
+                return Error{ErrorCode::io, (folder / name).string() + ": " + error.message() +
+                                                "; choose a folder you may write to with --save"};
+            }
+            const Sequence sequence = job->make();
+            if (auto written = write_joint_recording(folder / name / "joints.csv",
+                                                     corpus::joints_of(sequence));
+                !written) {
+                return written.error();
+            }
+            if (auto written = write_labels(folder / name / "labels.csv", sequence.labels);
+                !written) {
+                return written.error();
+            }
+        }
+        return {};
+    }
+
     /// Sequences are independent, so every processor runs some; what they give is added in the
     /// order of the plan.
     Result<std::vector<Group>> run() {
@@ -181,8 +221,7 @@ class Plan {
     }
     void add_job(std::size_t group, const GestureSettings& settings,
                  std::function<Sequence()> make) {
-        jobs_.push_back(
-            {group, [settings, make = std::move(make)] { return corpus::run(make(), settings); }});
+        jobs_.push_back({group, [settings, make] { return corpus::run(make(), settings); }, make});
     }
 
     void plan_gestures() {
@@ -283,12 +322,14 @@ class Plan {
             for (int i = 0; i < people; ++i) {
                 const auto person = seed(400'000 + static_cast<std::uint64_t>(i));
                 jobs_.push_back(
-                    {group, [=] {
+                    {group,
+                     [=] {
                          return corpus::run_images(
                              corpus::perform_all(
                                  names, corpus::before_a_rig(corpus::draw_person(person)), 1, {}),
                              rig, settings);
-                     }});
+                     },
+                     {}});
             }
         }
     }
@@ -304,7 +345,13 @@ int make_corpus(const CorpusOptions& options) {
     if (!sets) {
         return usage(sets.error());
     }
-    auto groups = Plan(options, std::move(*sets)).run();
+    Plan plan(options, std::move(*sets));
+    if (!options.save.empty()) {
+        if (auto saved = plan.save(options.save); !saved) {
+            return fail(saved.error());
+        }
+    }
+    auto groups = plan.run();
     if (!groups) {
         return fail(groups.error());
     }
@@ -339,6 +386,10 @@ void add_corpus(CLI::App& app, int& exit_status) {
     command->add_option("--only", options->only, "One part alone")
         ->check(CLI::IsMember(std::vector<std::string>{"gestures", "manners", "everyday",
                                                        "passers-by", "company", "images"}));
+    command
+        ->add_option("--save", options->save,
+                     "Folder for the first sequence of each kind, as a recording of joints")
+        ->check(not_empty());
     command->add_flag("--explain", options->explain, "Every false event and missed gesture");
     command->add_flag("--json", options->json, "JSON instead of tables");
     command->add_flag("--measure-noise", options->measure_noise,

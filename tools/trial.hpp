@@ -5,13 +5,14 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include <xtrack/scoring.hpp>
 #include <xtrack/session.hpp>
 #include <xtrack/sim.hpp>
+
+#include "tools/commit_delay.hpp"
 
 namespace xtrack::tools {
 
@@ -48,15 +49,6 @@ struct TrialResult {
 
     void add(const TrialResult& other);
 };
-
-/// How long after its definition was fulfilled a gesture that was found was told.
-struct CommitDelay {
-    std::string gesture;
-    double ms = 0.0;
-};
-/// @param labels the events were judged by; those without a commit say nothing
-[[nodiscard]] std::vector<CommitDelay> delays_after_commit(std::span<const JudgedEvent> events,
-                                                           std::span<const GestureLabel> labels);
 
 /// The gestures that are looked for.
 [[nodiscard]] GestureSettings gestures_of(const TrialOptions& options);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/sim/random.hpp"
 
@@ -340,7 +341,11 @@ class HandMotion::Planner {
 };
 
 HandMotion::HandMotion(const SimSettings& settings, SimHand hand, const HandModel& model)
-    : hand_(hand), place_({}), turn_({}), fingers_(relaxed_open()), sway_(settings.seed, hand) {
+    : hand_(hand),
+      place_({}),
+      turn_({}),
+      fingers_(relaxed_open()),
+      sway_(std::in_place, settings.seed, hand) {
     bool enters = false;
     for (const SimStep& step : settings.script) {
         if (step.hand == hand) {

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "core/sim/random.hpp"
-#include "tools/trial.hpp"
 
 namespace xtrack::tools::corpus {
 
@@ -38,8 +37,8 @@ Person before_a_rig(Person person) {
     return person;
 }
 
-Result<Tally> run_images(const Sequence& sequence, const ImageRig& rig,
-                         const GestureSettings& settings) {
+TrialOptions trial_of(const Sequence& sequence, const ImageRig& rig,
+                      const GestureSettings& settings) {
     TrialOptions options;
     options.preset = rig.preset;
     options.method = rig.method;
@@ -61,7 +60,12 @@ Result<Tally> run_images(const Sequence& sequence, const ImageRig& rig,
             }
         }
     };
-    auto result = run_trial(options);
+    return options;
+}
+
+Result<Tally> run_images(const Sequence& sequence, const ImageRig& rig,
+                         const GestureSettings& settings) {
+    auto result = run_trial(trial_of(sequence, rig, settings));
     if (!result) {
         return result.error();
     }

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "tools/corpus/run.hpp"
+#include "tools/trial.hpp"
 
 namespace xtrack::tools::corpus {
 
@@ -19,6 +20,11 @@ inline constexpr std::array<ImageRig, 3> kImageRigs{{{"ideal-60 grey", "ideal-60
 
 /// The person as a rig can see them: within its working distance.
 [[nodiscard]] Person before_a_rig(Person person);
+
+/// A trial in which a rig sees the sequence's first two hands.
+/// @param sequence borrowed as long as the options live
+[[nodiscard]] TrialOptions trial_of(const Sequence& sequence, const ImageRig& rig,
+                                    const GestureSettings& settings);
 
 /// Fringe images of the sequence's first two hands, through the whole pipeline.
 /// @pre the people are before_a_rig(), nobody is strange

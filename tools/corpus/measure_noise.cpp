@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -13,21 +13,14 @@
 #include <xtrack/session.hpp>
 #include <xtrack/sim.hpp>
 
-#include "core/sim/hand_model.hpp"
-#include "core/sim/motion.hpp"
+#include "tools/corpus/images.hpp"
 #include "tools/corpus/noise.hpp"
+#include "tools/corpus/performer.hpp"
 #include "tools/corpus/seen_hand.hpp"
-#include "tools/method_choice.hpp"
 
 namespace xtrack::tools::corpus {
 
 namespace {
-
-struct Rig {
-    const char* preset;
-    const char* method;  ///< empty: the preset's own
-};
-constexpr std::array<Rig, 3> kRigs{{{"ideal-60", ""}, {"webcam-30", "rgb"}, {"webcam-30", ""}}};
 
 constexpr float kSameHandMm = 150.0F;  // farther off it is another thing that was taken for a hand
 constexpr float kMovesMmps = 100.0F;
@@ -94,6 +87,7 @@ struct Share {
 struct Measured {
     std::array<std::array<Errors, 3>, 2> palm;  ///< sideways, up and down, to the camera
     std::array<Errors, 2> palm_along;           ///< along the fingers, as a share of the scale
+    std::array<Errors, 2> palm_to_thumb;
     std::array<Errors, 2> palm_norm;
     std::array<Errors, 2> radius;
     std::array<Errors, 2> tip;  ///< sideways
@@ -117,22 +111,18 @@ struct Measured {
 
 class Meter {
  public:
-    Meter(const SimSettings& settings, SimHand hand, Measured& out)
-        : motion_(settings, hand, sim::hand_model()),
-          camera_(settings.rig.camera),
-          scale_(static_cast<float>(settings.user.hand_length_mm) / sim::kModelHandLengthMm),
-          chest_mm_(static_cast<float>(settings.user.chest_distance_mm)),
-          out_(out) {}
+    Meter(const Movement& movement, Measured& out) : motion_(movement), out_(out) {}
 
     void see(const HandFrame& frame) {
         if (frame.stamp == last_) {
             return;
         }
         const double t = static_cast<double>(frame.stamp.ns) * 1e-9;
-        const SeenHand truth = look_at(motion_.at(t), motion_.hand(), scale_, camera_);
-        constexpr float kClearOfBodyMm = 130.0F;
+        const SeenHand truth =
+            look_at(motion_.at(t), motion_.hand(), motion_.person().scale(), corpus_camera());
+        constexpr double kClearOfBodyMm = 130.0F;
         const bool clear = truth.in_view && !truth.touches_border &&
-                           truth.palm_mm.z() < chest_mm_ - kClearOfBodyMm;
+                           truth.palm_mm.z() < motion_.person().chest_mm - kClearOfBodyMm;
         const double before = t - 0.05;
         const bool moves =
             (motion_.at(t).palm_mm - motion_.at(before).palm_mm).norm() > kMovesMmps * 0.05F;
@@ -171,14 +161,19 @@ class Meter {
 
  private:
     void compare(const Hand& hand, const SeenHand& truth, bool moves) {
+        const float scale = motion_.person().scale();
         const Vec3f off = hand.palm_mm - truth.palm_mm;
         for (int axis = 0; axis < 3; ++axis) {
             out_.palm[moves][static_cast<std::size_t>(axis)].add(off[axis], follows_);
         }
-        const Vec3f along = (truth.joints_mm[0] - truth.joints_mm[1]).normalized();
-        out_.palm_along[moves].add(off.dot(along) / scale_, follows_);
+        const auto joint = [&](Joint j) { return truth.joints_mm[static_cast<std::size_t>(j)]; };
+        const Vec3f along = (joint(Joint::palm) - joint(Joint::wrist)).normalized();
+        const Vec3f to_thumb =
+            (joint(Joint::index_proximal) - joint(Joint::little_proximal)).normalized();
+        out_.palm_along[moves].add(off.dot(along) / scale, follows_);
+        out_.palm_to_thumb[moves].add(off.dot(to_thumb) / scale, follows_);
         out_.palm_norm[moves].add(off.norm(), follows_);
-        out_.radius[moves].add((hand.palm_radius_mm - truth.palm_radius_mm) / scale_, follows_);
+        out_.radius[moves].add((hand.palm_radius_mm - truth.palm_radius_mm) / scale, follows_);
         out_.confidence[moves].add(hand.confidence, follows_);
         constexpr double kDegrees = 57.29577951;
         if (hand.palm_normal.norm() > 0.0F) {
@@ -192,11 +187,11 @@ class Meter {
         }
         for (std::size_t f = 0; f < kFingerCount; ++f) {
             const bool valid = hand.fingertips[f].valid;
-            if (!truth.tip_seen[f] && truth.tip_gap_mm[f] > kTipGaps_mm[1] * scale_) {
+            if (!truth.tip_seen[f] && truth.tip_gap_mm[f] > kTipGaps_mm[1] * scale) {
                 out_.hidden_tip_valid.add(valid);
                 continue;
             }
-            out_.tip_valid[bin_of(truth.tip_gap_mm[f] / scale_, kTipGaps_mm)].add(valid);
+            out_.tip_valid[bin_of(truth.tip_gap_mm[f] / scale, kTipGaps_mm)].add(valid);
             if (!truth.tip_seen[f]) {
                 continue;
             }
@@ -221,10 +216,7 @@ class Meter {
             .add(hand.grab_value - truth.grab, follows_);
     }
 
-    sim::HandMotion motion_;
-    Pinhole camera_;
-    float scale_;
-    float chest_mm_;
+    const Movement& motion_;
     Measured& out_;
     Stamp last_;
     bool follows_ = false;
@@ -232,38 +224,26 @@ class Meter {
     std::optional<Stamp> lost_since_;
 };
 
-Result<void> follow(const Rig& rig, std::uint64_t seed, Measured& out) {
-    auto settings = SimSettings::preset(rig.preset);
-    if (!settings) {
-        return settings.error();
-    }
-    settings->vary(seed);
-    const SimHand hand = settings->script.front().hand;
-    if (*rig.method != '\0') {
-        if (auto shown = show_method(rig.method, GestureSettings{}, *settings); !shown) {
-            return shown.error();
-        }
-    }
-    auto source = SimulatedRig::create(*settings);
-    if (!source) {
-        return source.error();
-    }
-    SessionOptions options;
-    options.pace = Pace::replay;
-    auto session = Session::create(std::unique_ptr<FrameSource>(std::move(*source)), options);
-    if (!session) {
-        return session.error();
-    }
-    Meter meter(*settings, hand, out);
-    session->subscribe_pipeline([&meter](const PipelineView& view) {
-        if (view.depth != nullptr && view.camera_hands != nullptr) {
-            meter.see(*view.camera_hands);
-        }
-    });
-    return session->run();
+Result<void> follow(const ImageRig& rig, std::uint64_t seed, Measured& out) {
+    // Every shape of a hand that gestures have.
+    GestureSettings settings;
+    settings.pull = settings.grab = settings.tap = settings.circle = true;
+    settings.open_palm = settings.fist = settings.point = settings.victory = true;
+    const Sequence sequence =
+        perform_all(names_of(settings), before_a_rig(draw_person(seed)), 1, {});
+    Meter meter(sequence.hands.front(), out);
+    const auto result = run_trial(
+        trial_of(sequence, rig, settings), [&meter](Session& session, const SimulatedRig& /*sim*/) {
+            session.subscribe_pipeline([&meter](const PipelineView& view) {
+                if (view.depth != nullptr && view.camera_hands != nullptr) {
+                    meter.see(*view.camera_hands);
+                }
+            });
+        });
+    return result ? Result<void>{} : result.error();
 }
 
-std::string text_of(const Rig& rig, const Measured& m) {
+std::string text_of(const ImageRig& rig, const Measured& m) {
     std::string out = fmt::format("{} {}\n{:<34} {:>6} {:>8} {:>8} {:>8} {:>6}\n", rig.preset,
                                   *rig.method == '\0' ? "grey" : rig.method, "", "n", "median",
                                   "sigma", "95 %", "corr");
@@ -277,6 +257,7 @@ std::string text_of(const Rig& rig, const Measured& m) {
             line(fmt::format("palm {}, mm, {}", kAxes[axis], kStates[s]), m.palm[s][axis].text());
         }
         line(fmt::format("palm along fingers/scale, {}", kStates[s]), m.palm_along[s].text());
+        line(fmt::format("palm to thumb/scale, {}", kStates[s]), m.palm_to_thumb[s].text());
         line(fmt::format("palm, distance, mm, {}", kStates[s]), m.palm_norm[s].text());
         line(fmt::format("radius/scale, mm, {}", kStates[s]), m.radius[s].text());
         line(fmt::format("tip x, mm, {}", kStates[s]), m.tip[s].text());
@@ -315,7 +296,7 @@ std::string text_of(const Rig& rig, const Measured& m) {
 
 Result<std::string> measure_noise(int people) {
     std::string out;
-    for (const Rig& rig : kRigs) {
+    for (const ImageRig& rig : kImageRigs) {
         Measured measured;
         for (int seed = 1; seed <= people; ++seed) {
             if (auto done = follow(rig, static_cast<std::uint64_t>(seed), measured); !done) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -17,9 +16,6 @@ double touch_plane_mm() {
 }
 
 std::vector<std::string> names_of(const GestureSettings& settings) {
-    constexpr std::array<Direction, 4> kWays{Direction::left, Direction::right, Direction::up,
-                                             Direction::down};
-    constexpr std::array<Direction, 2> kTurns{Direction::clockwise, Direction::counterclockwise};
     std::vector<std::string> names;
     for (std::size_t i = 0; i < kGestureTypeCount; ++i) {
         GestureEvent event;
@@ -28,17 +24,11 @@ std::vector<std::string> names_of(const GestureSettings& settings) {
             !is_wanted(settings, event.type)) {
             continue;
         }
-        const auto add = [&](const auto& directions) {
-            for (const Direction direction : directions) {
-                event.direction = direction;
-                names.push_back(name_of(event));
-            }
-        };
-        if (event.type == GestureType::swipe) {
-            add(kWays);
-        } else if (event.type == GestureType::circle) {
-            add(kTurns);
-        } else {
+        if (directions_of(event.type).empty()) {
+            names.push_back(name_of(event));
+        }
+        for (const Direction direction : directions_of(event.type)) {
+            event.direction = direction;
             names.push_back(name_of(event));
         }
     }

@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 #include <xtrack/gesture_recogniser.hpp>
 
+#include "tools/commit_delay.hpp"
 #include "tools/corpus/definitions.hpp"
 #include "tools/corpus/tracked.hpp"
-#include "tools/trial.hpp"
 
 namespace xtrack::tools::corpus {
 
@@ -199,10 +199,10 @@ Result<Tally> run(const Sequence& sequence, const GestureSettings& settings) {
     return tally;
 }
 
-std::vector<HandFrame> frames_of(const Sequence& sequence) {
+std::vector<HandFrame> joints_of(const Sequence& sequence) {
     std::vector<HandFrame> frames;
     const std::vector<const Movement*> hands = pointers(sequence);
-    Tracked tracked(sequence.view, sequence.frame_hz, sequence.seed, hands);
+    Tracked tracked(View::joints, sequence.frame_hz, sequence.seed, hands);
     follow(sequence, tracked, [&frames](const HandFrame& frame) { frames.push_back(frame); });
     return frames;
 }

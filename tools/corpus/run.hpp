@@ -66,7 +66,8 @@ using HandOf = std::function<std::size_t(const GestureEvent&)>;
 /// @errors invalid_argument: settings out of range
 [[nodiscard]] Result<Tally> run(const Sequence& sequence, const GestureSettings& settings);
 
-/// The hands of a sequence frame by frame, as its recording would hold them: interaction frame.
-[[nodiscard]] std::vector<HandFrame> frames_of(const Sequence& sequence);
+/// The hands of a sequence frame by frame, interaction frame, with all their joints: whatever it is
+/// seen by, what a tracker of joints would have seen.
+[[nodiscard]] std::vector<HandFrame> joints_of(const Sequence& sequence);
 
 }  // namespace xtrack::tools::corpus

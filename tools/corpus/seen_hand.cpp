@@ -60,6 +60,7 @@ SeenHand look_at(const sim::HandPose& pose, SimHand hand, float scale, const Pin
         facing = -facing;
     }
     seen.palm_normal = normal;
+    seen.forearm = -bones.bones[sim::kForearm].rotation.col(1).normalized();
     seen.palm_radius_mm = scale * std::max(kPalmRadiusMm * std::sqrt(facing), kPalmSideMm);
     const auto& turned = bones.bones[sim::kHandBone].rotation;  // and scaled
     seen.palm_mm = centre + to_camera * (scale * kPalmSkinMm) + turned.col(0) * kPalmToThumbMm -

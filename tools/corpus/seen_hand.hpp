@@ -21,6 +21,7 @@ struct SeenHand {
     Vec3f palm_mm = Vec3f::Zero();
     float palm_radius_mm = 0.0F;
     Vec3f palm_normal = Vec3f::Zero();
+    Vec3f forearm = Vec3f::Zero();  ///< unit, toward the elbow
     std::array<Vec3f, kFingerCount> tips_mm{};
     std::array<bool, kFingerCount> tip_seen{};     ///< stands out of the outline, by itself
     std::array<float, kFingerCount> tip_gap_mm{};  ///< in the image, to the nearest other tip

@@ -224,6 +224,7 @@ void Tracked::see_depth(Follow& f, const SeenHand& seen, bool moves, Hand& hand)
     hand.palm_radius_mm = seen.palm_radius_mm;
     const Vec3f tilt = scaled(f.normal, n.normal_rad, n.normal_rad, n.normal_rad);
     hand.palm_normal = to_user(Vec3f(seen.palm_normal + tilt)).normalized();
+    hand.forearm = to_user(Vec3f(seen.forearm + tilt)).normalized();
     hand.extended_fingers = 0;
     for (std::size_t i = 0; i < kFingerCount; ++i) {
         const double share =
