@@ -113,6 +113,7 @@ Result<Processor> Processor::for_depth(const Rig& rig, const SessionOptions& opt
     processor.tracker_size_ = rig.camera.size;
     processor.rig_ = rig;
     processor.tracker_settings_ = options.tracker;
+    processor.pointer_ahead_ = options.pointer_ahead;
     return processor;
 }
 
@@ -121,7 +122,9 @@ Result<Processor> Processor::for_hands(const SessionOptions& options) {
     if (!recogniser) {
         return recogniser.error();
     }
-    return Processor(std::move(*recogniser), Mat4d::Identity());
+    Processor processor(std::move(*recogniser), Mat4d::Identity());
+    processor.pointer_ahead_ = options.pointer_ahead;
+    return processor;
 }
 
 DecodeMethod Processor::method() const noexcept {
@@ -271,7 +274,7 @@ Result<Processor::Outcome> Processor::process(const InputItem& item) {
     const auto begin = Wall::now();
     if (view.interaction_hands != nullptr) {
         lag_ = item.stamp - interaction_hands_.stamp;
-        pointer_.update(interaction_hands_);
+        pointer_.update(interaction_hands_, *lag_ + pointer_ahead_);
         outcome.events = recogniser_.push(interaction_hands_);
     } else {
         outcome.events = advance(item.stamp);

@@ -70,6 +70,7 @@ class Processor {
     TrackerSettings tracker_settings_;
     HandFromJoints hand_from_joints_;
     Pointer pointer_;
+    Duration pointer_ahead_ = Duration::zero();
     GestureRecogniser recogniser_;
     Mat4d interaction_from_camera_;
     HandFrame camera_hands_;  ///< with what the tracker does not know

@@ -53,13 +53,29 @@ bool HandSlot::holds() {
     return any;
 }
 
-Grip HandSlot::fingers() const { return {machines.pinch.closed(), false, machines.pinch.broke()}; }
+Grip HandSlot::fingers() const {
+    if (machines.pinch.closed() || machines.grab.closed()) {
+        return {true, machines.grab.closed(), CancelReason::none};
+    }
+    const CancelReason broke = machines.pinch.broke();
+    return {false, false, broke != CancelReason::none ? broke : machines.grab.broke()};
+}
 
 Grip HandSlot::grip(const GestureSettings& s) const {
-    if (s.press && (machines.press.closed() || machines.press.broke() != CancelReason::none)) {
-        return {machines.press.closed(), false, machines.press.broke()};
-    }
-    return s.pinch ? fingers() : Grip{};
+    Grip grip;
+    const auto join = [&](bool wanted, const auto& machine, bool fist) {
+        if (wanted && !grip.held) {
+            grip.held = machine.closed();
+            grip.fist = grip.held && fist;
+            grip.broke = grip.held                          ? CancelReason::none
+                         : grip.broke != CancelReason::none ? grip.broke
+                                                            : machine.broke();
+        }
+    };
+    join(s.press, machines.press, false);
+    join(s.pinch, machines.pinch, false);
+    join(s.grab, machines.grab, true);
+    return grip;
 }
 
 void HandSlot::update(Context& c, bool two_handed) {
@@ -92,13 +108,15 @@ void HandSlot::update(Context& c, bool two_handed) {
         c.taken = strongest < M::kRank || (strongest == M::kRank && holder != &machine);
         c.out.mute(asks);
         machine.update(c);
+        machines.listen();
         c.out.mute(false);
         summons = summons || c.out.muted_count() != muted;
         if (machine.holds() || c.out.all().size() != before) {
             take(machine);
         }
         // A first stroke may become either; who has turned back twice does not swipe.
-        if (M::kRank == Rank::rhythm && c.settings.wave && machines.wave.swings()) {
+        if (M::kRank == Rank::rhythm &&
+            ((c.settings.wave && machines.wave.swings()) || machines.circle.swings())) {
             strongest = std::min(strongest, Rank::grip);
         }
     });

@@ -4,15 +4,21 @@
 #include <xtrack/hand.hpp>
 #include <xtrack/one_euro_filter.hpp>
 
+#include "gestures/recognise/circle.hpp"
 #include "gestures/recognise/context.hpp"
+#include "gestures/recognise/double.hpp"
 #include "gestures/recognise/drag.hpp"
 #include "gestures/recognise/dwell.hpp"
+#include "gestures/recognise/grab.hpp"
 #include "gestures/recognise/pinch.hpp"
+#include "gestures/recognise/pose.hpp"
 #include "gestures/recognise/presence.hpp"
 #include "gestures/recognise/press.hpp"
 #include "gestures/recognise/push.hpp"
+#include "gestures/recognise/raise.hpp"
 #include "gestures/recognise/silence.hpp"
 #include "gestures/recognise/swipe.hpp"
+#include "gestures/recognise/tap.hpp"
 #include "gestures/recognise/touch.hpp"
 #include "gestures/recognise/wave.hpp"
 
@@ -30,23 +36,48 @@ struct Machines {
     PressMachine press;
     TouchMachine touch;
     PinchMachine pinch;
+    GrabMachine grab;
+    CircleMachine circle;
     WaveMachine wave;
     SwipeMachine swipe;
     PushMachine push;
+    TapMachine tap;
+    RaiseMachine raise;
     DwellMachine dwell;
+    PoseMachine open_palm{GestureType::open_palm};
+    PoseMachine fist{GestureType::fist};
+    PoseMachine point{GestureType::point};
+    PoseMachine victory{GestureType::victory};
+    PoseMachine thumb_up{GestureType::thumb_up};
+    PoseMachine thumb_down{GestureType::thumb_down};
+    DoubleMachine double_pinch{"double_pinch", GestureType::double_pinch};
+    DoubleMachine double_tap{"double_tap", GestureType::double_tap};
     DragMachine drag;
 
     /// In the order of their turns: the strong before the weak, but rhythms before strokes, because
-    /// a stroke that is part of a rhythm is none.
+    /// a stroke that is part of a rhythm is none, circles before waves, because a circle goes to
+    /// and fro as well, and what is made of others after them.
     template <typename Act>
     void each(const Act& act) {
         act(press);
         act(touch);
         act(pinch);
+        act(grab);
+        act(circle);
         act(wave);
         act(swipe);
         act(push);
+        act(tap);
+        act(raise);
         act(dwell);
+        act(open_palm);
+        act(fist);
+        act(point);
+        act(victory);
+        act(thumb_up);
+        act(thumb_down);
+        act(double_pinch);
+        act(double_tap);
     }
 
     template <typename Act>
@@ -55,10 +86,17 @@ struct Machines {
         each(act);
     }
 
+    /// Tells what is made of other gestures of what these have sent.
+    void listen() noexcept {
+        double_pinch.hear(pinch.gesture_id());
+        double_tap.hear(tap.gesture_id());
+    }
+
     /// Those that something else can go on with are taken over: cancelled, but followed.
     void carry(const Context& c) {
         press.carry(c);
         pinch.carry(c);
+        grab.carry(c);
     }
 };
 

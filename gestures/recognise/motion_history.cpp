@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gestures/track/hand_from_joints.hpp"
+#include "gestures/recognise/line_fit.hpp"
 
 namespace xtrack::recognise {
 
@@ -20,6 +20,11 @@ constexpr float kSpanMm = 175.0F;
 constexpr float kSpanOfRadius = 3.7F;
 constexpr float kFastestMmps = 1500.0F;
 constexpr float kApertureNoiseMm = 12.0F;
+// What is averaged to lower its noise: one sample at 20 fps, five at 120 fps, so that nothing is
+// late where frames are few.
+constexpr Duration kRecent = std::chrono::milliseconds{40};
+// Five images at 60 Hz, or a depth camera at 15 Hz.
+constexpr Duration kUsualSpan = std::chrono::nanoseconds{1'000'000'000 / 15};
 
 /// Where the hand points: from the wrist where joints say it, else to the straight fingers.
 Vec3f distal_of(const Hand& hand) {
@@ -42,34 +47,20 @@ Vec3f distal_of(const Hand& hand) {
     return along.norm() >= kShortestMm ? Vec3f(along.normalized()) : Vec3f(Vec3f::Zero());
 }
 
-/// Straight line through points over time, least squares.
-class LineFit {
- public:
-    explicit LineFit(const Vec3f& origin_mm) : origin_mm_(origin_mm) {}
-    void add(double t_s, const Vec3f& point_mm) {
-        const Vec3d p = (point_mm - origin_mm_).cast<double>();
-        ++count_;
-        sum_t_ += t_s;
-        sum_tt_ += t_s * t_s;
-        sum_p_ += p;
-        sum_tp_ += t_s * p;
+/// From the thumb's tip to the nearest joint of index and middle finger beyond their knuckles.
+float thumb_to_fingers(const Hand& hand, const TrackedPoint& thumb) {
+    float nearest_mm = -1.0F;
+    for (const Joint j : {Joint::index_intermediate, Joint::index_distal, Joint::index_tip,
+                          Joint::middle_intermediate, Joint::middle_distal, Joint::middle_tip}) {
+        const TrackedPoint& point = hand.joint(j);
+        if (thumb.valid && point.valid && thumb.position_mm.allFinite() &&
+            point.position_mm.allFinite()) {
+            const float mm = (point.position_mm - thumb.position_mm).norm();
+            nearest_mm = nearest_mm < 0.0F ? mm : std::min(nearest_mm, mm);
+        }
     }
-    [[nodiscard]] int count() const { return count_; }
-    /// mm/s; zero where there is one moment only.
-    [[nodiscard]] Vec3f slope() const {
-        const double spread = count_ * sum_tt_ - sum_t_ * sum_t_;
-        return spread > 0.0 ? Vec3f(((count_ * sum_tp_ - sum_t_ * sum_p_) / spread).cast<float>())
-                            : Vec3f(Vec3f::Zero());
-    }
-
- private:
-    Vec3f origin_mm_;  // near the points, so that squares stay small
-    int count_ = 0;
-    double sum_t_ = 0.0;
-    double sum_tt_ = 0.0;
-    Vec3d sum_p_ = Vec3d::Zero();
-    Vec3d sum_tp_ = Vec3d::Zero();
-};
+    return nearest_mm;
+}
 
 }  // namespace
 
@@ -111,6 +102,23 @@ MotionSample sample_of(const Hand& hand, Stamp stamp, Duration span) noexcept {
     }
     s.hand_length_mm = hand_length_mm(hand);
     s.extension = hand.finger_extension;
+    bool bends_known = false;
+    for (const Finger f : {Finger::index, Finger::middle, Finger::ring, Finger::little}) {
+        const Flexion flexion = flexion_of(hand, f);
+        s.flexion[static_cast<std::size_t>(f)] = flexion;
+        bends_known = bends_known || flexion.whole_deg > kFlexionUnknown;
+    }
+    if (bends_known || (!s.from_joints && hand.extended_fingers >= 0)) {
+        s.grab = std::clamp(hand.grab_value, 0.0F, 1.0F);
+    }
+    s.thumb_to_fingers_mm = thumb_to_fingers(hand, thumb);
+    if (thumb.valid && thumb.position_mm.allFinite()) {
+        const TrackedPoint& root = hand.joint(Joint::thumb_proximal);
+        const bool joints = root.valid && root.position_mm.allFinite();
+        const Vec3f along = thumb.position_mm - (joints ? root.position_mm : hand.palm_mm);
+        s.thumb_along =
+            along.norm() >= kShortestMm ? Vec3f(along.normalized()) : Vec3f(Vec3f::Zero());
+    }
     if (thumb.valid && middle.valid && thumb.position_mm.allFinite() &&
         middle.position_mm.allFinite()) {
         s.thumb_to_middle_mm = (thumb.position_mm - middle.position_mm).norm();
@@ -192,6 +200,28 @@ Vec3f MotionHistory::tip_velocity(Duration window) const noexcept {
         }
     }
     return fit.count() >= kEnough ? fit.slope() : velocity(window);
+}
+
+double MotionHistory::recent(float MotionSample::*what) const noexcept {
+    double sum = 0.0;
+    int n = 0;
+    const std::size_t newest = count_within(kRecent);
+    for (std::size_t i = 0; i < newest; ++i) {
+        if (at(i).*what >= 0.0F) {
+            sum += static_cast<double>(at(i).*what);
+            ++n;
+        }
+    }
+    return n > 0 ? sum / n : -1.0;
+}
+
+double MotionHistory::smear_mm(Duration window, std::size_t back) const noexcept {
+    const MotionSample& sample = at(back);
+    if (sample.from_joints) {
+        return 0.0;
+    }
+    const Duration span = sample.span > Duration::zero() ? sample.span : kUsualSpan;
+    return static_cast<double>(velocity(std::max(span, window), back).norm()) * to_seconds(span);
 }
 
 std::size_t MotionHistory::count_within(Duration age) const noexcept {

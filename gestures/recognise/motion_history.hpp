@@ -7,6 +7,8 @@
 #include <xtrack/hand.hpp>
 #include <xtrack/stamp.hpp>
 
+#include "gestures/track/hand_from_joints.hpp"
+
 namespace xtrack::recognise {
 
 [[nodiscard]] constexpr Duration from_ms(double ms) noexcept {
@@ -29,6 +31,12 @@ struct MotionSample {
     float aperture_mm = -1.0F;     ///< thumb tip to index tip; -1 = unknown
     float hand_length_mm = 0.0F;   ///< 0 = unknown
     std::array<float, kFingerCount> extension{-1.0F, -1.0F, -1.0F, -1.0F, -1.0F};
+    /// Of index to little finger; joints alone say it.
+    std::array<Flexion, kFingerCount> flexion{};
+    float grab = -1.0F;                 ///< 0 open .. 1 fist; -1 = unknown
+    float thumb_to_fingers_mm = -1.0F;  ///< tip to the nearest joint of index and middle finger
+                                        ///< beyond their knuckles; -1 = unknown
+    Vec3f thumb_along = Vec3f::Zero();  ///< unit, to the thumb's tip; zero = unknown
     /// Thumb and index tip as seen from the index knuckle, so that the arm's motion drops out.
     Vec3f thumb_from_knuckle_mm = Vec3f::Zero();
     Vec3f index_from_knuckle_mm = Vec3f::Zero();
@@ -73,6 +81,14 @@ class MotionHistory {
     /// The same for the fingertip farthest from the palm, where it is known in at least three
     /// samples of the window; else the palm's.
     [[nodiscard]] Vec3f tip_velocity(Duration window) const noexcept;
+
+    /// Mean of what is known (not negative) over the newest 40 ms; -1 = unknown.
+    [[nodiscard]] double recent(float MotionSample::*what) const noexcept;
+
+    /// How far the palm moved while its depth was measured: a camera's depth is made of several
+    /// images, and what is seen of the fingers in a stroke cannot be believed. 0 for joints.
+    /// @param window of the velocity, at least
+    [[nodiscard]] double smear_mm(Duration window, std::size_t back = 0) const noexcept;
 
     /// How many samples are not older than `age` (counted from the newest).
     [[nodiscard]] std::size_t count_within(Duration age) const noexcept;

@@ -20,9 +20,6 @@ namespace xtrack::recognise {
 
 namespace {
 
-// The aperture is averaged over it: one sample at 20 fps, five at 120 fps, so that noise falls
-// where frames are plenty and nothing is late where they are few.
-constexpr Duration kApertureWindow = std::chrono::milliseconds{40};
 // The hand before the fingers close, for comparison with the hand while they touch.
 constexpr Duration kPoseWindow = std::chrono::milliseconds{300};
 // An aperture that is not known for so long is a finger that is lost. Longer than a hand's 120 ms:
@@ -31,25 +28,10 @@ constexpr Duration kApertureLost = std::chrono::milliseconds{300};
 // The fingers must be seen on their way: in this share of the samples of pinch_approach_ms. Cameras
 // that see a hand well know 0.75 and more, a hand whose tips come and go 0.6 and less.
 constexpr double kApproachShare = 0.65;
-// Five images at 60 Hz, or a depth camera at 15 Hz.
-constexpr Duration kUsualSpan = std::chrono::nanoseconds{1'000'000'000 / 15};
 constexpr double kSmallestWayMm = 1.0;
 // A pinch that must open by more than this would not open any more.
 constexpr double kMostNoiseMm = 6.0;
 constexpr double kCapShare = 1.25;  // of pinch_close_mm: a hand length may be measured badly
-
-double aperture_of(const MotionHistory& history) {
-    double sum = 0.0;
-    int n = 0;
-    const std::size_t recent = history.count_within(kApertureWindow);
-    for (std::size_t i = 0; i < recent; ++i) {
-        if (history.at(i).aperture_mm >= 0.0F) {
-            sum += static_cast<double>(history.at(i).aperture_mm);
-            ++n;
-        }
-    }
-    return n > 0 ? sum / n : -1.0;
-}
 
 class Mean {
  public:
@@ -97,16 +79,8 @@ Before look_back(const MotionHistory& history, Stamp open_at) {
     return before;
 }
 
-/// How far the palm moved while its depth was measured: a camera's depth is made of several images,
-/// and what is seen of the fingers in a stroke cannot be believed. 0 for joints.
 double blur_mm(const MotionHistory& history, std::size_t back, const GestureSettings& s) {
-    const MotionSample& sample = history.at(back);
-    if (sample.from_joints) {
-        return 0.0;
-    }
-    const Duration span = sample.span > Duration::zero() ? sample.span : kUsualSpan;
-    const Duration window = std::max(span, from_ms(s.velocity_window_ms));
-    return static_cast<double>(history.velocity(window, back).norm()) * to_seconds(span);
+    return history.smear_mm(from_ms(s.velocity_window_ms), back);
 }
 
 /// Share of samples before `closed_at` in which the aperture was known and could be believed.
@@ -180,7 +154,7 @@ void PinchMachine::update(const Context& c) {
         drop(c, CancelReason::superseded, "another gesture has the hand");
         return;
     }
-    const double aperture_mm = aperture_of(c.history);
+    const double aperture_mm = c.history.recent(&MotionSample::aperture_mm);
     if (aperture_mm < 0.0) {
         if (now - aperture_at_ >= kApertureLost) {
             drop(c, CancelReason::lost, "the fingers are lost");

@@ -14,7 +14,8 @@ class PinchMachine {
     static constexpr Rank kRank = Rank::grip;
     [[nodiscard]] static bool sends(const GestureSettings& s) noexcept { return s.pinch; }
     [[nodiscard]] static bool wanted(const GestureSettings& s) noexcept {
-        return s.pinch || s.double_pinch || s.drag || s.two_hand_zoom || s.two_hand_rotate;
+        return s.pinch || s.double_pinch || s.two_hand_zoom || s.two_hand_rotate || s.grab ||
+               s.tap || s.double_tap;  // what is a pinch is none of these
     }
 
     /// A new sample is in the history.
@@ -29,6 +30,8 @@ class PinchMachine {
     void carry(const Context& c);
 
     [[nodiscard]] bool holds() const noexcept { return state_ == State::pinched; }
+    /// Of the pinch that began last; -1: none yet.
+    [[nodiscard]] int gesture_id() const noexcept { return gesture_id_; }
     /// The fingers are together, whoever has the hand.
     [[nodiscard]] bool closed() const noexcept {
         return state_ == State::pinched || state_ == State::carried;

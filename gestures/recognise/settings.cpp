@@ -142,6 +142,31 @@ constexpr std::array kFields{
     number<&S::pinch_bunch_mm>("pinch_bunch_mm", 0.0, 60.0),
     number<&S::pinch_bunch_extension>("pinch_bunch_extension", 0.0, 1.0),
     number<&S::pinch_index_share>("pinch_index_share", 0.0, 0.9),
+    number<&S::grab_strength>("grab_strength", 0.3, 1.0),
+    number<&S::grab_release>("grab_release", 0.1, 0.9),
+    number<&S::grab_hold_ms>("grab_hold_ms", 0.0, 1000.0),
+    number<&S::grab_open>("grab_open", 0.0, 0.6),
+    number<&S::grab_approach_ms>("grab_approach_ms", 50.0, 3000.0),
+    number<&S::grab_palm_mmps>("grab_palm_mmps", 20.0, 2000.0),
+    number<&S::grab_settle_ms>("grab_settle_ms", 0.0, 5000.0),
+    number<&S::grab_thumb_share>("grab_thumb_share", 0.05, 1.0),
+    number<&S::tap_flexion_deg>("tap_flexion_deg", 10.0, 120.0),
+    number<&S::tap_lean_deg>("tap_lean_deg", 10.0, 60.0),
+    number<&S::tap_speed_degps>("tap_speed_degps", 50.0, 2000.0),
+    number<&S::tap_open_deg>("tap_open_deg", 5.0, 90.0),
+    number<&S::tap_open_share>("tap_open_share", 0.1, 1.0),
+    number<&S::tap_within_ms>("tap_within_ms", 100.0, 3000.0),
+    number<&S::tap_pointing_extension>("tap_pointing_extension", 0.0, 1.0),
+    number<&S::tap_palm_mm>("tap_palm_mm", 10.0, 500.0),
+    number<&S::tap_others_bend>("tap_others_bend", 0.0, 2.0),
+    number<&S::tap_others_stretch>("tap_others_stretch", 0.0, 2.0),
+    number<&S::double_within_ms>("double_within_ms", 100.0, 2000.0),
+    number<&S::circle_least_mm>("circle_least_mm", 10.0, 200.0),
+    number<&S::circle_most_mm>("circle_most_mm", 100.0, 1000.0),
+    number<&S::circle_turns>("circle_turns", 0.5, 2.0),
+    number<&S::circle_error>("circle_error", 0.05, 0.6),
+    number<&S::circle_stale_ms>("circle_stale_ms", 50.0, 2000.0),
+    number<&S::circle_within_ms>("circle_within_ms", 500.0, 10000.0),
     number<&S::press_slow_mmps>("press_slow_mmps", 20.0, 1000.0),
     number<&S::press_slow_way_mm>("press_slow_way_mm", 5.0, 200.0),
     number<&S::press_fast_mmps>("press_fast_mmps", 20.0, 1000.0),
@@ -171,6 +196,15 @@ constexpr std::array kFields{
     number<&S::wave_off_axis_mm>("wave_off_axis_mm", 10.0, 200.0),
     number<&S::wave_rest_mmps>("wave_rest_mmps", 10.0, 200.0),
     number<&S::wave_rest_ms>("wave_rest_ms", 0.0, 2000.0),
+    number<&S::raise_mm>("raise_mm", 50.0, 600.0),
+    number<&S::raise_within_ms>("raise_within_ms", 200.0, 1000.0),
+    number<&S::raise_still_mmps>("raise_still_mmps", 10.0, 200.0),
+    number<&S::raise_still_ms>("raise_still_ms", 0.0, 700.0),
+    number<&S::pose_begin>("pose_begin", 0.3, 1.0),
+    number<&S::pose_end>("pose_end", 0.0, 0.9),
+    number<&S::pose_hold_ms>("pose_hold_ms", 0.0, 3000.0),
+    number<&S::pose_palm_mmps>("pose_palm_mmps", 20.0, 1000.0),
+    number<&S::pose_end_ms>("pose_end_ms", 0.0, 1000.0),
 };
 
 std::string text(double value) {
@@ -335,6 +369,20 @@ Result<void> validate(const GestureSettings& s) {
     }
     if (s.drag && !s.pinch && !s.grab && !s.press) {
         return refuse("drag is on; switch pinch, grab or press on, which it goes on from");
+    }
+    // Strengths and scores scatter by a few hundredths.
+    constexpr double kApart = 0.1;
+    if (s.grab_strength - s.grab_release < kApart) {
+        return refuse("grab_release is " + text(s.grab_release) + "; give at most " +
+                      text(s.grab_strength - kApart) + " (grab_strength - 0.1)");
+    }
+    if (s.grab_open >= s.grab_release) {
+        return refuse("grab_open is " + text(s.grab_open) + "; give less than grab_release, " +
+                      text(s.grab_release));
+    }
+    if (s.pose_begin - s.pose_end < kApart) {
+        return refuse("pose_end is " + text(s.pose_end) + "; give at most " +
+                      text(s.pose_begin - kApart) + " (pose_begin - 0.1)");
     }
     if (s.gone_ms < s.lost_freeze_ms) {
         return refuse("gone_ms is " + text(s.gone_ms) + "; give at least lost_freeze_ms, " +

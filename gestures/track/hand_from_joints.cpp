@@ -20,8 +20,14 @@ constexpr milliseconds kForgetAfter{300};     // a hand that is back later start
 // that is folded away 0.4..0.6 (measured on joints of three trackers).
 constexpr float kFoldedRatio = 0.50F;
 constexpr float kStraightRatio = 0.95F;
-constexpr float kFistRatio = 0.60F;  // a fist's fingers are rarely folded to the limit
 constexpr float kExtendedFrom = 0.70F;
+
+constexpr float kDegrees = 57.29578F;
+
+// Flexion of a finger that grabs: none in an open hand at rest, all in one that is closed (measured
+// on joints of two trackers: open 0..60, half closed at rest 110..150, closed 165..240).
+constexpr float kOpenDeg = 40.0F;
+constexpr float kFistDeg = 195.0F;
 
 constexpr float kPinchOpenMm = 60.0F;  // value 0
 constexpr float kPinchShutMm = 15.0F;  // value 1
@@ -111,6 +117,32 @@ Vec3f palm_facing(const Hand& hand) noexcept {
     return hand.chirality == Chirality::left ? Vec3f(-front) : front;
 }
 
+Flexion flexion_of(const Hand& hand, Finger finger) noexcept {
+    const auto first = static_cast<int>(kChains[static_cast<std::size_t>(finger)].first);
+    const auto joint = [&](int i) { return static_cast<Joint>(first + i); };
+    const Joint root = known(hand, Joint::wrist) ? Joint::wrist : Joint::palm;
+    const Vec3f front = palm_facing(hand);
+    if (finger == Finger::thumb || front.isZero() || !known(hand, Joint::middle_proximal) ||
+        !known(hand, joint(0)) || !known(hand, joint(1)) || !known(hand, joint(2)) ||
+        !known(hand, joint(3))) {
+        return {};
+    }
+    const Vec3f along =
+        (hand.joint(Joint::middle_proximal).position_mm - hand.joint(root).position_mm)
+            .normalized();
+    const auto bone = [&](int i) {
+        return Vec3f(hand.joint(joint(i + 1)).position_mm - hand.joint(joint(i)).position_mm);
+    };
+    const auto between = [](const Vec3f& a, const Vec3f& b) {
+        return std::atan2(a.cross(b).norm(), a.dot(b));
+    };
+    const float up = bone(0).dot(front);
+    const float knuckle_rad =
+        std::atan2(hand.chirality == Chirality::unknown ? std::abs(up) : up, bone(0).dot(along));
+    const float inner_rad = knuckle_rad + between(bone(0), bone(1));
+    return {kDegrees * (inner_rad + between(bone(1), bone(2))), kDegrees * inner_rad};
+}
+
 float hand_length_mm(const Hand& hand) noexcept {
     const Bones middle = bones_of(hand, kChains[static_cast<std::size_t>(Finger::middle)]);
     return middle.joints == 4 ? middle.length_mm / kMiddleFingerOfHand : 0.0F;
@@ -153,9 +185,9 @@ bool complete_from_joints(Hand& hand) noexcept {
             std::clamp((ratio - kFoldedRatio) / (kStraightRatio - kFoldedRatio), 0.0F, 1.0F);
         ++known_fingers;
         extended += hand.finger_extension[f] >= kExtendedFrom ? 1 : 0;
-        if (f != static_cast<std::size_t>(Finger::thumb)) {
-            curl +=
-                std::clamp((kStraightRatio - ratio) / (kStraightRatio - kFistRatio), 0.0F, 1.0F);
+        const float deg = flexion_of(hand, static_cast<Finger>(f)).whole_deg;
+        if (deg > kFlexionUnknown) {
+            curl += std::clamp((deg - kOpenDeg) / (kFistDeg - kOpenDeg), 0.0F, 1.0F);
             ++curl_fingers;
         }
     }

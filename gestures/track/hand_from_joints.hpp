@@ -50,6 +50,19 @@ bool complete_from_joints(Hand& hand) noexcept;
 /// unknown chirality the sign is a guess.
 Vec3f palm_facing(const Hand& hand) noexcept;
 
+/// Less than any finger bends.
+inline constexpr float kFlexionUnknown = -360.0F;
+
+/// How far a finger (not the thumb) bends, degrees: in all its three joints together, and without
+/// the outermost, which trackers guess. 0 in line with the palm, 170 to 240 (150 to 190) in a fist,
+/// negative bent back; for a hand of unknown chirality the knuckle's part is never negative.
+/// kFlexionUnknown where joints are missing.
+struct Flexion {
+    float whole_deg = kFlexionUnknown;
+    float inner_deg = kFlexionUnknown;
+};
+Flexion flexion_of(const Hand& hand, Finger finger) noexcept;
+
 /// Wrist to middle fingertip of the straight hand, mm, from the middle finger's bones; 0 = unknown.
 float hand_length_mm(const Hand& hand) noexcept;
 

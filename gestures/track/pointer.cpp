@@ -2,6 +2,7 @@
 #include "gestures/track/pointer.hpp"
 
 #include <algorithm>
+#include <chrono>
 
 namespace xtrack {
 
@@ -26,11 +27,34 @@ Pointer::Slot& Pointer::slot_of(int hand_id, std::span<const Hand> in_frame) noe
     return oldest;
 }
 
-void Pointer::update(HandFrame& frame) noexcept {
+namespace {
+
+// A hand's velocity holds no longer; more would overshoot where it turns.
+constexpr Duration kFarthest = std::chrono::milliseconds{150};
+// Velocity is a line fit over 100 ms, in which 2 mm of noise make 23 mm/s at 60 Hz: below three
+// sigma nothing is known, from twice that on it is believed.
+constexpr float kStillMmps = 70.0F;
+constexpr float kMovingMmps = 140.0F;
+
+/// How far the hand goes meanwhile.
+Vec3f way_ahead(const Hand& hand, Duration ahead) {
+    const auto seconds =
+        static_cast<float>(to_seconds(std::clamp(ahead, Duration::zero(), kFarthest)));
+    const float mmps = hand.palm_velocity_mmps.norm();
+    if (!(mmps > kStillMmps)) {  // false for NaN
+        return Vec3f::Zero();
+    }
+    const float share = std::min((mmps - kStillMmps) / (kMovingMmps - kStillMmps), 1.0F);
+    return share * seconds * hand.palm_velocity_mmps;
+}
+
+}  // namespace
+
+void Pointer::update(HandFrame& frame, Duration ahead) noexcept {
     for (Hand& hand : frame.all()) {
         Slot& slot = slot_of(hand.id, frame.all());
         slot.seen = frame.stamp;
-        hand.pointer_mm = slot.filter.filter(hand.palm_mm, frame.stamp);
+        hand.pointer_mm = slot.filter.filter(hand.palm_mm, frame.stamp) + way_ahead(hand, ahead);
     }
 }
 

@@ -14,7 +14,9 @@ namespace xtrack {
 /// @thread one thread at a time
 class Pointer {
  public:
-    void update(HandFrame& frame) noexcept;
+    /// @param ahead how old the frame will be when its pointer is used: a hand that moves is put
+    ///        where it will be by then, along its velocity; one at rest stays calm. At most 150 ms
+    void update(HandFrame& frame, Duration ahead = Duration::zero()) noexcept;
 
  private:
     struct Slot {

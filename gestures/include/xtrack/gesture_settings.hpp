@@ -190,6 +190,63 @@ struct GestureSettings {
     /// 0.5..0.85, thumbs that fold in front of the palm 0.1..0.3.
     double pinch_index_share = 0.25;
 
+    // --- grab ------------------------------------------------------------------------------------
+    /// Strength from which on it is closed, and at which it opens again. 0.3..1; 0.1..0.9; at least
+    /// 0.1 apart. TouchFree has 0.8 and 0.7.
+    double grab_strength = 0.80;
+    double grab_release = 0.65;
+    /// Closed for so long. 0..1000. As pinches.
+    double grab_hold_ms = 100.0;
+    /// The approach: seen so open, at most so long before it closes. 0..0.6; 50..3000. Measured:
+    /// grabs take 100..570; hands that half close at rest have 0.4..0.7.
+    double grab_open = 0.25;
+    double grab_approach_ms = 700.0;
+    /// It begins once the palm is slower than this, which must be within so long. 20..2000;
+    /// 0..5000. Measured: grabs reach out at 800 mm/s, and are at 50..180 mm/s 200 ms later.
+    double grab_palm_mmps = 200.0;
+    double grab_settle_ms = 400.0;
+    /// The thumb lies on index or middle finger: its tip is at most this share of the hand's length
+    /// from their nearest joint. 0.05..1. Measured: grabs 0.06..0.17, shown thumbs 0.3..0.5.
+    double grab_thumb_share = 0.19;
+
+    // --- tap -------------------------------------------------------------------------------------
+    /// The index bends by so much in its two inner joints, at this speed at least; of a camera's
+    /// hand it is how far the way from palm to tip leans toward the screen. 10..120; 10..60;
+    /// 50..2000. TouchFree has 30 and 180. Measured: taps 73..170 at 420..1370, and 50.
+    double tap_flexion_deg = 55.0;
+    double tap_lean_deg = 30.0;
+    double tap_speed_degps = 180.0;
+    /// It straightens again by this, and by this share of the bend, at most so long after it was
+    /// straight. 5..90; 0.1..1; 100..3000. Measured: 450..1300 ms.
+    double tap_open_deg = 15.0;
+    double tap_open_share = 0.5;
+    double tap_within_ms = 1500.0;
+    /// The hand points, before and after: mean extension of the three others at most. 0..1.
+    /// Measured: taps 0.1..0.45.
+    double tap_pointing_extension = 0.5;
+    /// The palm stays within. 10..500. Measured: taps 30..105, letters drawn in the air 140..215.
+    double tap_palm_mm = 120.0;
+    /// Another finger bends, or stretches, at most by this share of the index's bend. 0..2; 0..2.
+    double tap_others_bend = 0.5;
+    double tap_others_stretch = 0.8;
+
+    // --- double pinch, double tap ----------------------------------------------------------------
+    /// From the first to the second. 100..2000. The usual double click.
+    double double_within_ms = 500.0;
+
+    // --- circle ----------------------------------------------------------------------------------
+    /// Radius. 10..200; 100..1000. Leap, NiTE.
+    double circle_least_mm = 40.0;
+    double circle_most_mm = 400.0;
+    /// So much of a turn is one; then each full turn. 0.5..2. Leap.
+    double circle_turns = 0.75;
+    /// The farthest off the circle, as a share of its radius. 0.05..0.6. NiTE.
+    double circle_error = 0.3;
+    /// Without progress for so long it ends. 50..2000. NiTE.
+    double circle_stale_ms = 300.0;
+    /// A turn takes at most so long. 500..10000.
+    double circle_within_ms = 3000.0;
+
     // --- press -----------------------------------------------------------------------------------
     /// The way toward the screen that makes a virtual force of 1: at the slow speed, at the fast
     /// one and above, quadratic between; slower adds nothing. 20..1000; 5..200. TouchFree AirPush.
@@ -248,6 +305,24 @@ struct GestureSettings {
     /// Slower for so long before the next. 10..200; 0..2000.
     double wave_rest_mmps = 65.0;
     double wave_rest_ms = 360.0;
+
+    // --- raise -----------------------------------------------------------------------------------
+    /// Upward, within so long. 50..600; 200..1000. NiTE2.
+    double raise_mm = 150.0;
+    double raise_within_ms = 1000.0;
+    /// Then slower for so long. 10..200; 0..700. NiTE2.
+    double raise_still_mmps = 65.0;
+    double raise_still_ms = 200.0;
+
+    // --- poses -----------------------------------------------------------------------------------
+    /// Score from which on a pose fits, and under which it ends. 0.3..1; 0..0.9; 0.1 apart.
+    double pose_begin = 0.8;
+    double pose_end = 0.6;
+    /// Fits for so long, with a palm slower than this. 0..3000; 20..1000. MediaPipe's users, SHREC.
+    double pose_hold_ms = 500.0;
+    double pose_palm_mmps = 100.0;
+    /// Does not fit for so long. 0..1000.
+    double pose_end_ms = 100.0;
 };
 
 /// What enabled gestures ask of the depth images they are seen in.

@@ -72,8 +72,9 @@ struct Hand {
     Vec3f palm_normal = Vec3f::Zero();  ///< unit, out of the palm's seen side; 0 = unknown
     Vec3f palm_velocity_mmps = Vec3f::Zero();
     Vec3f forearm = Vec3f::Zero();  ///< unit, from the palm toward the elbow; 0 = unknown
-    /// The palm through a 1-euro filter: calm at rest, little lag in motion. For cursors; set by
-    /// the Session, in the interaction frame alone.
+    /// The palm through a 1-euro filter: calm at rest, little lag in motion, and of a moving hand
+    /// where it is by now rather than in the depth image (SessionOptions::pointer_ahead). For
+    /// cursors; set by the Session, in the interaction frame alone.
     Vec3f pointer_mm = Vec3f::Zero();
 
     /// Distal extremes, thumb to little. Which finger is which is a guess where a finger hides.

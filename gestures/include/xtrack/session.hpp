@@ -52,6 +52,10 @@ struct SessionOptions {
     DecodeSettings decode;
     TrackerSettings tracker;
     GestureSettings gestures;
+    /// How long it takes from a source's newest image until a cursor at Hand::pointer_mm is seen:
+    /// transfer, processing, display. The pointer of a moving hand is put so far ahead, after what
+    /// depth lags behind its images, which is known; together at most 150 ms.
+    Duration pointer_ahead = Duration::zero();
 };
 
 /// What one step did.

@@ -3,7 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <cstdio>
+#include <numeric>
+#include <random>
+#include <vector>
 
 namespace xtrack {
 namespace {
@@ -18,6 +23,83 @@ HandFrame hand_at(int id, float x_mm, int frame) {
     hands.hands[0].id = id;
     hands.hands[0].palm_mm = {x_mm, 0.0F, 500.0F};
     return hands;
+}
+
+/// Hands that move evenly, with the velocity that a line fit over 100 ms of noisy palms gives.
+struct Course {
+    double mmps = 0.0;
+    double noise_mm = 0.0;
+    Duration ahead = Duration::zero();
+
+    /// Pointer minus the true palm at the frame, after two seconds. mm, x
+    [[nodiscard]] std::vector<double> errors() const {
+        std::mt19937 random(17);
+        std::normal_distribution<double> noise(0.0, 1.0);
+        Pointer pointer;
+        std::vector<double> xs;
+        std::vector<double> out;
+        const double dt_s = to_seconds(kFrame);
+        for (int i = 0; i < 1320; ++i) {
+            const double truth_mm = mmps * dt_s * i;
+            xs.push_back(truth_mm + noise_mm * noise(random));
+            HandFrame hands = hand_at(1, static_cast<float>(xs.back()), i);
+            hands.hands[0].palm_velocity_mmps.x() = static_cast<float>(slope(xs, dt_s));
+            pointer.update(hands, ahead);
+            if (i >= 120) {
+                out.push_back(static_cast<double>(hands.hands[0].pointer_mm.x()) - truth_mm);
+            }
+        }
+        return out;
+    }
+
+    static double slope(const std::vector<double>& xs, double dt_s) {
+        const int n = static_cast<int>(std::min<std::size_t>(xs.size(), 7));
+        double sum = 0.0;
+        double norm = 0.0;
+        for (int k = 0; k < n; ++k) {
+            const double t = (k - 0.5 * (n - 1)) * dt_s;
+            sum += t * xs[xs.size() - static_cast<std::size_t>(n - k)];
+            norm += t * t;
+        }
+        return norm > 0.0 ? sum / norm : 0.0;
+    }
+};
+
+double mean_of(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double rms_of(const std::vector<double>& values) {
+    const double mean = mean_of(values);
+    double sum = 0.0;
+    for (const double v : values) {
+        sum += (v - mean) * (v - mean);
+    }
+    return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+TEST(Pointer, OfAStillHandJittersByHalfAMillimetre) {
+    for (const int ahead_ms : {0, 60}) {
+        const double rms_mm =
+            rms_of(Course{0.0, 2.0, std::chrono::milliseconds{ahead_ms}}.errors());
+        std::printf("still, 2 mm in, %d ms ahead: %.2f mm rms\n", ahead_ms, rms_mm);
+        EXPECT_LE(rms_mm, 0.5) << ahead_ms;
+    }
+}
+
+TEST(Pointer, LagsBy12MsAt300Mmps) {
+    const double lag_ms = -mean_of(Course{300.0, 0.0}.errors()) / 0.3;
+    std::printf("300 mm/s: %.1f ms behind\n", lag_ms);
+    EXPECT_LE(lag_ms, 12.0);
+    EXPECT_GT(lag_ms, 0.0);
+}
+
+TEST(Pointer, GoesAheadOfAHandThatMoves) {
+    const double ahead_ms =
+        mean_of(Course{300.0, 0.0, std::chrono::milliseconds{60}}.errors()) / 0.3;
+    EXPECT_NEAR(ahead_ms, 60.0, 12.0);
+    const double most_ms = mean_of(Course{300.0, 0.0, std::chrono::seconds{5}}.errors()) / 0.3;
+    EXPECT_LE(most_ms, 150.0);
 }
 
 TEST(Pointer, IsCalmWhereThePalmTrembles) {
