@@ -96,7 +96,7 @@ void HandSlot::update(Context& c, bool two_handed) {
     summons = false;
     const std::size_t first = c.out.all().size();
     machines.each([&]<typename M>(M& machine) {
-        if (!M::wanted(c.settings)) {
+        if (!machine.wanted(c.settings)) {
             return;
         }
         // A bystander may ask for the session, and is not heard otherwise.
