@@ -19,6 +19,7 @@ namespace xtrack::tools {
 // sets `exit_status` (0 done, 1 failed, 2 wrong usage).
 void add_bench(CLI::App& app, int& exit_status);
 void add_calibrate(CLI::App& app, int& exit_status);
+void add_corpus(CLI::App& app, int& exit_status);
 void add_decode(CLI::App& app, int& exit_status);
 void add_demo(CLI::App& app, int& exit_status);
 void add_eval(CLI::App& app, int& exit_status);

@@ -34,6 +34,7 @@ int run(int argc, char** argv) {
     xtrack::tools::add_record(app, exit_status);
     xtrack::tools::add_eval(app, exit_status);
     xtrack::tools::add_demo(app, exit_status);
+    xtrack::tools::add_corpus(app, exit_status);
     xtrack::tools::add_calibrate(app, exit_status);
     xtrack::tools::add_decode(app, exit_status);
     xtrack::tools::add_bench(app, exit_status);

@@ -7,6 +7,7 @@
 
 #include <CLI/App.hpp>
 #include <xtrack/decode_settings.hpp>
+#include <xtrack/gesture_settings.hpp>
 #include <xtrack/session.hpp>
 
 namespace xtrack::tools {

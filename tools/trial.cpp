@@ -96,6 +96,9 @@ void append(std::vector<double>& to, const std::vector<double>& from) {
 
 void TrialResult::add(const TrialResult& other) {
     score.add(other.score);
+    for (const auto& [name, one] : other.gestures) {
+        gestures[name].add(one);
+    }
     append(depth_rms_mm, other.depth_rms_mm);
     append(depth_off, other.depth_off);
     append(depth_missing, other.depth_missing);
@@ -104,6 +107,9 @@ void TrialResult::add(const TrialResult& other) {
 }
 
 GestureSettings gestures_of(const TrialOptions& options) {
+    if (options.gestures) {
+        return *options.gestures;
+    }
     GestureSettings gestures;
     gestures.pinch = options.use_rig;
     return gestures;
@@ -122,12 +128,16 @@ Result<TrialResult> run_trial(const TrialOptions& options, const TrialSetup& set
             return shown.error();
         }
     }
+    if (options.arrange) {
+        options.arrange(*settings);
+    }
     auto rig = SimulatedRig::create(*settings);
     if (!rig) {
         return rig.error();
     }
     SimulatedRig& sim = **rig;
     TrialResult result;
+    result.labels = options.labels;
     for (const SimLabel& label : sim.labels()) {
         result.labels.push_back(label_of(label));
     }
@@ -156,6 +166,7 @@ Result<TrialResult> run_trial(const TrialOptions& options, const TrialSetup& set
     GestureScorer scorer(session_options.gestures);
     result.events = scorer.add(events, result.labels, length);
     result.score = scorer.all();
+    result.gestures = scorer.gestures();
     result.statistics = session->statistics();
     return result;
 }

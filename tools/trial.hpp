@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +21,12 @@ struct TrialOptions {
     std::string method;      ///< of show_method(); empty: the preset's own patterns
     bool use_rig = true;     ///< false: relative depth, no pinches
     Pace pace = Pace::replay;
+    /// What is looked for; absent: the standard gestures, without pinches where there is no rig.
+    std::optional<GestureSettings> gestures;
+    /// Has the last word on what is simulated; what it lets happen, `labels` say instead of the
+    /// simulator.
+    std::function<void(SimSettings&)> arrange;
+    std::vector<GestureLabel> labels;
     /// Compare depth and palm with the truth now and then. Only in replay: truth is rendered by the
     /// source, which is read in another thread otherwise.
     bool measure_depth = false;
@@ -27,6 +35,7 @@ struct TrialOptions {
 /// How well it went, against what the simulator knows.
 struct TrialResult {
     GestureScore score;
+    std::map<std::string, GestureScore> gestures;
     std::vector<JudgedEvent> events;
     std::vector<GestureLabel> labels;
     std::vector<double> depth_rms_mm;   ///< a measured frame: hand, pixels within 15 mm

@@ -12,9 +12,7 @@
 
 namespace xtrack::sim {
 
-/// Bends of the fingers, rad, four a finger, thumb first. A finger's: flexion at the knuckle,
-/// spread toward the thumb, flexion at the middle joint, at the end joint. The thumb's: opposition
-/// (across the palm), spread away from the index finger, flexion at its two outer joints.
+/// Bends of the fingers, as SimPose has them.
 inline constexpr std::size_t kAnglesPerFinger = 4;
 using FingerAngles = std::array<float, kAnglesPerFinger * kSimFingerCount>;
 

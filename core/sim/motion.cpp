@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <utility>
 
 #include "core/sim/random.hpp"
 
@@ -103,6 +103,15 @@ Vec3f away_of(const SimSettings& settings, SimHand hand) {
     const double x = home_of(settings.user, hand).x() * 1.4;
     return {static_cast<float>(x), static_cast<float>(edge + settings.user.hand_length_mm),
             static_cast<float>(z)};
+}
+
+Vec3f shoulder_of(const SimUser& user, SimHand hand) {
+    constexpr double kShoulderHalfMm = 185.0;
+    constexpr double kShoulderDownMm = -35.0;
+    constexpr double kShoulderBehindChestMm = 75.0;
+    return {static_cast<float>(hand == SimHand::right ? -kShoulderHalfMm : kShoulderHalfMm),
+            static_cast<float>(kShoulderDownMm),
+            static_cast<float>(user.chest_distance_mm + kShoulderBehindChestMm)};
 }
 
 }  // namespace
@@ -332,7 +341,11 @@ class HandMotion::Planner {
 };
 
 HandMotion::HandMotion(const SimSettings& settings, SimHand hand, const HandModel& model)
-    : hand_(hand), place_({}), turn_({}), fingers_(relaxed_open()) {
+    : hand_(hand),
+      place_({}),
+      turn_({}),
+      fingers_(relaxed_open()),
+      sway_(std::in_place, settings.seed, hand) {
     bool enters = false;
     for (const SimStep& step : settings.script) {
         if (step.hand == hand) {
@@ -341,13 +354,7 @@ HandMotion::HandMotion(const SimSettings& settings, SimHand hand, const HandMode
         }
     }
     place_ = Track<3>(to_array(enters ? away_of(settings, hand) : home_of(settings.user, hand)));
-    constexpr double kShoulderHalfMm = 185.0;
-    constexpr double kShoulderDownMm = -35.0;
-    constexpr double kShoulderBehindChestMm = 75.0;
-    shoulder_mm_ = {static_cast<float>(hand == SimHand::right ? -kShoulderHalfMm : kShoulderHalfMm),
-                    static_cast<float>(kShoulderDownMm),
-                    static_cast<float>(settings.user.chest_distance_mm + kShoulderBehindChestMm)};
-    plan_sway(settings.seed);
+    shoulder_mm_ = shoulder_of(settings.user, hand);
     Planner planner(*this, settings, model);
     for (const SimStep& step : settings.script) {
         if (step.hand == hand) {
@@ -356,30 +363,20 @@ HandMotion::HandMotion(const SimSettings& settings, SimHand hand, const HandMode
     }
 }
 
-void HandMotion::plan_sway(std::uint64_t seed) {
-    Random random(mix(seed, 202U + static_cast<std::uint64_t>(hand_)));
-    // Slow drift, and physiological tremor (8-12 Hz, tenths of a millimetre).
-    constexpr std::array<Range, kWaves> kHz{{{0.08, 0.2}, {0.25, 0.5}, {0.7, 1.3}, {8.0, 12.0}}};
-    constexpr std::array<double, kWaves> kPlaceMm{5.0, 2.5, 0.8, 0.12};
-    constexpr std::array<double, kWaves> kTurnRad{0.05, 0.02, 0.006, 0.001};
-    constexpr std::array<double, kWaves> kFingerRad{0.05, 0.02, 0.008, 0.001};
-    for (std::size_t channel = 0; channel < kWaveChannels; ++channel) {
-        const auto& amplitude = channel < 3 ? kPlaceMm : channel < 6 ? kTurnRad : kFingerRad;
-        for (std::size_t w = 0; w < kWaves; ++w) {
-            const double hz = random.between(kHz[w].low, kHz[w].high);
-            waves_[channel][w] = {static_cast<float>(amplitude[w] * random.between(0.6, 1.2)),
-                                  static_cast<float>(2.0 * std::numbers::pi * hz),
-                                  static_cast<float>(random.between(0.0, 2.0 * std::numbers::pi))};
-        }
+HandMotion::HandMotion(const SimSettings& settings, const SimPath& path)
+    : hand_(path.hand),
+      shoulder_mm_(shoulder_of(settings.user, path.hand)),
+      clock_s_(path.poses.back().t_s),
+      place_(to_array(path.poses.front().palm_mm)),
+      turn_(to_array(path.poses.front().turn_rad)),
+      fingers_(path.poses.front().fingers_rad) {
+    double before = path.poses.front().t_s;
+    for (const SimPose& pose : path.poses) {
+        place_.move_evenly(before, pose.t_s, to_array(pose.palm_mm));
+        turn_.move_evenly(before, pose.t_s, to_array(pose.turn_rad));
+        fingers_.move_evenly(before, pose.t_s, pose.fingers_rad);
+        before = pose.t_s;
     }
-}
-
-float HandMotion::sway(std::size_t channel, double t_s) const {
-    float sum = 0.0F;
-    for (const Wave& w : waves_[channel]) {
-        sum += w.amplitude * static_cast<float>(std::sin(w.rad_per_s * t_s + w.phase_rad));
-    }
-    return sum;
 }
 
 HandPose HandMotion::at(double t_s) const {
@@ -387,18 +384,9 @@ HandPose HandMotion::at(double t_s) const {
     pose.shoulder_mm = shoulder_mm_;
     pose.palm_mm = to_vector(place_.at(t_s));
     pose.turn_rad = to_vector(turn_.at(t_s));
-    for (int axis = 0; axis < 3; ++axis) {
-        pose.palm_mm[axis] += sway(static_cast<std::size_t>(axis), t_s);
-        pose.turn_rad[axis] += sway(static_cast<std::size_t>(axis) + 3, t_s);
-    }
     pose.fingers = fingers_.at(t_s);
-    const float bend = sway(kWaveChannels - 1, t_s);
-    // Idle fingers move together, the outer ones more; thumb and index hold a pinch steady.
-    constexpr std::array<float, kSimFingerCount> kShare{0.2F, 0.3F, 0.8F, 1.0F, 1.1F};
-    for (std::size_t f = 0; f < kSimFingerCount; ++f) {
-        const std::size_t first = f * kAnglesPerFinger;
-        pose.fingers[first + (f == kThumb ? 2 : 0)] += kShare[f] * bend;
-        pose.fingers[first + (f == kThumb ? 3 : 2)] += kShare[f] * bend;
+    if (sway_) {
+        sway_->add(t_s, pose);
     }
     return pose;
 }

@@ -4,12 +4,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <xtrack/sim.hpp>
 
 #include "core/sim/hand_model.hpp"
 #include "core/sim/hand_pose.hpp"
+#include "core/sim/sway.hpp"
 
 namespace xtrack::sim {
 
@@ -73,7 +75,10 @@ class Track {
 /// All that one hand does, from its first to its last moment.
 class HandMotion {
  public:
+    /// Performs the script of this hand.
     HandMotion(const SimSettings& settings, SimHand hand, const HandModel& model);
+    /// Moves as it is told, without a sway of its own. @pre the path has poses
+    HandMotion(const SimSettings& settings, const SimPath& path);
 
     [[nodiscard]] SimHand hand() const noexcept { return hand_; }
     [[nodiscard]] HandPose at(double t_s) const;
@@ -83,16 +88,6 @@ class HandMotion {
 
  private:
     class Planner;
-    struct Wave {
-        float amplitude = 0.0F;
-        float rad_per_s = 0.0F;
-        float phase_rad = 0.0F;
-    };
-    static constexpr std::size_t kWaves = 4;
-    static constexpr std::size_t kWaveChannels = 7;  // place, turns, fingers together
-
-    [[nodiscard]] float sway(std::size_t channel, double t_s) const;
-    void plan_sway(std::uint64_t seed);
 
     SimHand hand_;
     Vec3f shoulder_mm_ = Vec3f::Zero();
@@ -100,7 +95,7 @@ class HandMotion {
     Track<3> place_;     ///< palm, camera frame, mm
     Track<3> turn_;      ///< rad
     Track<20> fingers_;  ///< FingerAngles
-    std::array<std::array<Wave, kWaves>, kWaveChannels> waves_{};
+    std::optional<Sway> sway_;
     std::vector<SimLabel> labels_;
 };
 

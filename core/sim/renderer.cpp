@@ -24,8 +24,12 @@ Renderer::Renderer(const SimSettings& settings, std::size_t channels)
       curves_(settings, channels),
       model_(hand_model()),
       hand_scale_(static_cast<float>(settings.user.hand_length_mm) / kModelHandLengthMm) {
+    for (const SimPath& path : settings.paths) {
+        hands_.emplace_back(settings, path);
+    }
     for (const SimHand hand : {SimHand::left, SimHand::right}) {
-        if (std::any_of(settings.script.begin(), settings.script.end(),
+        if (settings.paths.empty() &&
+            std::any_of(settings.script.begin(), settings.script.end(),
                         [hand](const SimStep& s) { return s.hand == hand; })) {
             hands_.emplace_back(settings, hand, model_);
         }

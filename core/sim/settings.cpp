@@ -55,6 +55,34 @@ Error out_of_range(const Bound& b) {
                 "; give a value from " + std::to_string(b.low) + " to " + std::to_string(b.high)};
 }
 
+Result<void> validate_paths(const std::vector<SimPath>& paths) {
+    if (paths.size() > kSimMaxHands) {
+        return Error{ErrorCode::invalid_argument,
+                     "simulation: paths has " + std::to_string(paths.size()) +
+                         " hands; give at most " + std::to_string(kSimMaxHands)};
+    }
+    for (const SimPath& path : paths) {
+        if (path.poses.empty()) {
+            return Error{ErrorCode::invalid_argument,
+                         "simulation: paths has a hand without poses; give one at least"};
+        }
+        constexpr double kLongestS = 36000.0;
+        double before = -kLongestS;
+        for (const SimPose& pose : path.poses) {
+            const bool finite = pose.palm_mm.allFinite() && pose.turn_rad.allFinite() &&
+                                std::all_of(pose.fingers_rad.begin(), pose.fingers_rad.end(),
+                                            [](float angle) { return std::isfinite(angle); });
+            if (!(pose.t_s > before && pose.t_s <= kLongestS) || !finite) {
+                return Error{ErrorCode::invalid_argument,
+                             "simulation: paths has a pose whose t_s does not increase, is over "
+                             "36000, or whose numbers are not finite; mend it"};
+            }
+            before = pose.t_s;
+        }
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<SimSettings> SimSettings::preset(std::string_view name) {
@@ -159,7 +187,7 @@ Result<void> SimSettings::validate() const {
     const double frame_s = 1.0 / std::max(camera.frame_hz, 1e-3);
     const std::array<Bound, 32> bounds{{
         {"duration_s", duration_s, 0.0, 10.0 * kHour},
-        {"user.hand_length_mm", user.hand_length_mm, 140.0, 220.0},
+        {"user.hand_length_mm", user.hand_length_mm, 130.0, 220.0},
         {"user.skin_albedo", user.skin_albedo, 0.15, 0.8},
         {"user.hand_distance_mm", user.hand_distance_mm, 450.0, 800.0},
         {"user.hand_x_mm", user.hand_x_mm, -300.0, 300.0},
@@ -203,7 +231,10 @@ Result<void> SimSettings::validate() const {
                      "simulation: clocks.locked needs a global shutter (camera.readout_s 0) and "
                      "clocks.hold_frames 1; set them, or locked = false"};
     }
-    if (script.empty() && duration_s == 0.0) {
+    if (auto ok = validate_paths(paths); !ok) {
+        return ok.error();
+    }
+    if (script.empty() && paths.empty() && duration_s == 0.0) {
         return Error{ErrorCode::invalid_argument,
                      "simulation: duration_s is 0 (until the script is over) and there is no "
                      "script; give one of them"};

@@ -52,10 +52,34 @@ struct SimStep {
     Vec3f velocity_mmps = Vec3f::Zero();
 };
 
-/// The person. Ranges are those of adults.
+inline constexpr std::size_t kSimFingerCount = 5;
+inline constexpr std::size_t kSimAngleCount = 4 * kSimFingerCount;
+
+/// How a hand is held at a moment. Camera frame.
+/// @since 0.1
+struct SimPose {
+    double t_s = 0.0;                ///< from the stream's begin
+    Vec3f palm_mm = Vec3f::Zero();   ///< the OpenXR palm joint: in the middle of the hand
+    Vec3f turn_rad = Vec3f::Zero();  ///< pitch, yaw, roll away from palm to camera, fingers up; of
+                                     ///< a left hand as in a mirror
+    /// Four a finger, thumb first. A finger's: flexion at the knuckle, spread toward the thumb,
+    /// flexion at the middle joint, at the end joint. The thumb's: opposition (across the palm),
+    /// spread away from the index finger, flexion at its two outer joints.
+    std::array<float, kSimAngleCount> fingers_rad{};
+};
+
+/// A movement that was worked out elsewhere.
+/// @since 0.1
+struct SimPath {
+    SimHand hand = SimHand::right;
+    /// Times increase; straight lines between, at rest before the first and after the last.
+    std::vector<SimPose> poses;
+};
+
+/// The person. Ranges are those of people.
 /// @since 0.1
 struct SimUser {
-    double hand_length_mm = 185.0;     ///< wrist to middle fingertip, 140..220
+    double hand_length_mm = 185.0;     ///< wrist to middle fingertip, 130..220
     double skin_albedo = 0.55;         ///< diffuse, in the projector's light, 0.15..0.8
     double hand_distance_mm = 680.0;   ///< camera Z of the resting palm, 450..800
     double hand_x_mm = -40.0;          ///< camera X of the resting right palm; the left one mirrors
@@ -130,6 +154,8 @@ struct SimSettings {
     SimCamera camera;
     SimClocks clocks;
     std::vector<SimStep> script;  ///< empty = nobody's hand comes
+    /// Instead of a script, one a hand; they bring no labels.
+    std::vector<SimPath> paths;
 
     /// @param name `ideal-60` (global shutter, locked, grey) or `webcam-30` (rolling shutter, free
     ///        clocks, YUYV colour); both with demo_script().
@@ -164,7 +190,6 @@ struct SimLabel {
 /// Values of SimTruth::mask.
 enum class SimPart : std::uint8_t { none = 0, hand = 1, forearm = 2, body = 3, wall = 6 };
 
-inline constexpr std::size_t kSimFingerCount = 5;
 inline constexpr std::size_t kSimJointCount = 26;
 inline constexpr std::size_t kSimMaxHands = 2;
 

@@ -181,6 +181,51 @@ TEST(HandMotion, SlidesThroughItsRestingPlaceAtConstantVelocity) {
     EXPECT_LT((motion.at(2.0).palm_mm - (home + velocity * 0.4F)).norm(), kSway_mm);
 }
 
+TEST(HandMotion, FollowsAPathWithoutASwayOfItsOwn) {
+    SimSettings settings = SimSettings::preset("ideal-60").value();
+    SimPath path;
+    path.hand = SimHand::left;
+    path.poses.resize(2);
+    path.poses[0].t_s = 1.0;
+    path.poses[0].palm_mm = {0.0F, 10.0F, 600.0F};
+    path.poses[1].t_s = 2.0;
+    path.poses[1].palm_mm = {100.0F, 10.0F, 500.0F};
+    path.poses[1].turn_rad = {0.2F, 0.0F, 0.0F};
+    path.poses[1].fingers_rad[4] = 1.0F;
+    settings.paths = {path};
+    ASSERT_TRUE(settings.validate());
+    const HandMotion motion(settings, path);
+    EXPECT_EQ(motion.hand(), SimHand::left);
+    EXPECT_DOUBLE_EQ(motion.end_s(), 2.0);
+    EXPECT_EQ(motion.at(0.0).palm_mm, path.poses[0].palm_mm);
+    EXPECT_LT((motion.at(1.25).palm_mm - Vec3f(25.0F, 10.0F, 575.0F)).norm(), 1e-3F);
+    EXPECT_NEAR(motion.at(1.5).turn_rad.x(), 0.1F, 1e-5F);
+    EXPECT_NEAR(motion.at(1.5).fingers[4], 0.5F, 1e-5F);
+    EXPECT_EQ(motion.at(9.0).palm_mm, path.poses[1].palm_mm);
+    EXPECT_TRUE(motion.labels().empty());
+}
+
+TEST(SimSettings, RefusesPathsThatAreNone) {
+    const auto refuses = [](std::vector<SimPath> paths) {
+        SimSettings settings = SimSettings::preset("ideal-60").value();
+        settings.paths = std::move(paths);
+        const auto valid = settings.validate();
+        return !valid && valid.error().message.find("paths") != std::string::npos;
+    };
+    SimPath still;
+    still.poses.resize(1);
+    EXPECT_FALSE(refuses({still}));
+    EXPECT_FALSE(refuses({still, still}));
+    EXPECT_TRUE(refuses({still, still, still}));
+    EXPECT_TRUE(refuses({SimPath{}}));
+    SimPath backwards;
+    backwards.poses.resize(2);  // both at 0 s
+    EXPECT_TRUE(refuses({backwards}));
+    SimPath nowhere = still;
+    nowhere.poses[0].palm_mm.x() = NAN;
+    EXPECT_TRUE(refuses({nowhere}));
+}
+
 TEST(SimSettings, RefusesASlideThatIsNoMovement) {
     SimSettings settings = SimSettings::preset("ideal-60").value();
     settings.script = {{SimAction::slide, SimHand::right, -1.0, 0.0}};
