@@ -69,6 +69,16 @@ void Control::take(std::string line, Session& session) const {
     if (line.empty()) {
         return;
     }
+    if (is_gesture_setting(line)) {
+        GestureSettings gestures = session.gesture_settings();
+        auto changed = apply_gesture_settings({line}, gestures);
+        if (changed) {
+            changed = session.set_gesture_settings(gestures);
+        }
+        print_error(changed ? fmt::format("{}: from the next image on\n", line)
+                            : fmt::format("xtrack: {}\n", changed.error().message));
+        return;
+    }
     const DecodeSettings before = session.decode_settings();
     DecodeSettings settings = before;
     auto done = apply_settings({line}, settings);

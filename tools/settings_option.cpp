@@ -82,6 +82,12 @@ Result<void> apply_settings(const std::vector<std::string>& changes, DecodeSetti
     return apply(changes, "min_modulation=8", settings);
 }
 
+bool is_gesture_setting(const std::string& change) {
+    const std::string name = change.substr(0, change.find('='));
+    return std::ranges::any_of(gesture_fields(),
+                               [&](const GestureField& field) { return name == field.name; });
+}
+
 void add_gesture_settings_option(CLI::App& command, std::vector<std::string>& changes) {
     std::string text = "Changes a setting of the gestures:";
     for (const GestureField& field : gesture_fields()) {

@@ -30,6 +30,9 @@ void add_settings_option(CLI::App& command, std::vector<std::string>& changes,
                                           DecodeMethod method,
                                           const std::function<bool(const DecodeField&)>& uses);
 
+/// Whether it changes a setting of the gestures, switches included.
+[[nodiscard]] bool is_gesture_setting(const std::string& change);
+
 /// `--set NAME=VALUE` of gestures; its help lists every threshold with range and standard value.
 void add_gesture_settings_option(CLI::App& command, std::vector<std::string>& changes);
 

@@ -19,7 +19,8 @@ struct StreamOptions {
     std::optional<std::string> gestures;
     EventFormat events = EventFormat::text;
     EventFormat hands = EventFormat::none;
-    std::vector<std::string> changes;  ///< of the decoder's settings, NAME=VALUE
+    std::vector<std::string> changes;  ///< of settings of decoder and gestures, NAME=VALUE
+    bool why = false;                  ///< the gestures' state machines tell what they do
     bool statistics = false;
     bool json = false;
     std::optional<CaptureMode> mode;  ///< wanted: fringes are unwrapped in space

@@ -110,9 +110,7 @@ GestureSettings gestures_of(const TrialOptions& options) {
     if (options.gestures) {
         return *options.gestures;
     }
-    GestureSettings gestures;
-    gestures.pinch = options.use_rig;
-    return gestures;
+    return options.use_rig ? GestureSettings{} : without_millimetres({});
 }
 
 Result<TrialResult> run_trial(const TrialOptions& options, const TrialSetup& setup) {

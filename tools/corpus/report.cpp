@@ -27,8 +27,8 @@ std::string row(const std::string& name, const GestureScore& s) {
     return fmt::format("  {:<24} {:>5}/{:<5} {:>22} {:>5} {:>22} {:>5} {:>13} {:>5} {:>5}\n", name,
                        s.correct, s.labelled, asked ? text(s.detection()) : "-", s.false_events(),
                        asked ? text(s.false_per_label()) : "-",
-                       asked ? fmt::format("{:.2f}", s.jaccard()) : "-", text(s.from_commit_ms), s.wrong_hand,
-                       s.cancelled);
+                       asked ? fmt::format("{:.2f}", s.jaccard()) : "-", text(s.from_commit_ms),
+                       s.wrong_hand, s.cancelled);
 }
 
 std::string table(const Group& group) {

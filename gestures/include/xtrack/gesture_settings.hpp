@@ -343,6 +343,17 @@ struct GestureDemands {
 /// @since 0.1
 [[nodiscard]] bool is_wanted(const GestureSettings& settings, GestureType type) noexcept;
 
+/// Whether a gesture compares what is smaller than a hand, or is a distance that is asked for in
+/// mm: relative depth, whose lengths are nominal, does not carry it.
+/// @thread any
+/// @since 0.1
+[[nodiscard]] bool needs_millimetres(GestureType type) noexcept;
+
+/// The same settings without those gestures.
+/// @thread any
+/// @since 0.1
+[[nodiscard]] GestureSettings without_millimetres(const GestureSettings& settings);
+
 /// One field of GestureSettings, for programs that list, set and sweep them by name. A switch takes
 /// 0 and 1.
 /// @since 0.1
