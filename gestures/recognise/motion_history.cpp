@@ -79,7 +79,12 @@ float MotionSample::outer_extension() const noexcept {
     return known > 0 ? sum / static_cast<float>(known) : -1.0F;
 }
 
-MotionSample sample_of(const Hand& hand, Stamp stamp, Duration span) noexcept {
+MotionSample sample_of(const Hand& seen, Stamp stamp, Duration span) noexcept {
+    // Joints that follow from proportions tell nothing that the tips do not.
+    Hand hand = seen;
+    if (!seen.articulated) {
+        hand.joints = {};
+    }
     MotionSample s;
     s.stamp = stamp;
     s.span = span;
@@ -95,7 +100,7 @@ MotionSample sample_of(const Hand& hand, Stamp stamp, Duration span) noexcept {
     // normal.
     s.facing = palm_facing(hand);
     s.facing_signed = hand.chirality != Chirality::unknown;
-    s.from_joints = std::ranges::any_of(hand.joints, &TrackedPoint::valid);
+    s.from_joints = seen.articulated;
     const float span_mm = s.from_joints || hand.palm_radius_mm <= 0.0F
                               ? kSpanMm
                               : std::min(kSpanMm, kSpanOfRadius * hand.palm_radius_mm);

@@ -13,8 +13,10 @@ namespace {
 
 constexpr const char* kJointsFile = "joints.csv";
 
-/// What a tracker of depth knows of a hand, as joints.
+/// What a tracker of depth has measured of a hand, as joints; what follows from it is left out, or
+/// whoever reads them would take it for measured.
 void fill_joints(Hand& hand) {
+    hand.joints = {};
     constexpr Joint kTips[kFingerCount] = {Joint::thumb_tip, Joint::index_tip, Joint::middle_tip,
                                            Joint::ring_tip, Joint::little_tip};
     hand.joint(Joint::palm) = {hand.palm_mm, true};
@@ -121,8 +123,7 @@ Result<void> Recorder::add_joints(const HandFrame& hands) {
         }
     }
     for (Hand& hand : frame.all()) {
-        const bool from_depth = !hand.joint(Joint::palm).valid && !hand.joint(Joint::wrist).valid;
-        if (from_depth) {
+        if (!hand.articulated) {
             fill_joints(hand);
         }
     }
