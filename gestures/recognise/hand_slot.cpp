@@ -114,7 +114,8 @@ void HandSlot::update(Context& c, bool two_handed) {
         if (machine.holds() || c.out.all().size() != before) {
             take(machine);
         }
-        // A first stroke may become either; who has turned back twice, or gone round, does not swipe.
+        // A first stroke may become either; who has turned back twice, or gone round, does not
+        // swipe.
         if constexpr (requires { machine.swings(); }) {
             if (machine.sends(c.settings) && machine.swings()) {
                 strongest = std::min(strongest, Rank::grip);
