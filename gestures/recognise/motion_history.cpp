@@ -49,11 +49,12 @@ Vec3f distal_of(const Hand& hand) {
     return along.norm() >= kShortestMm ? Vec3f(along.normalized()) : Vec3f(Vec3f::Zero());
 }
 
-/// From the thumb's tip to the nearest joint of index and middle finger beyond their knuckles.
+/// From the thumb's tip to the nearest joint of index, middle and ring finger beyond the knuckles.
 float thumb_to_fingers(const Hand& hand, const TrackedPoint& thumb) {
     float nearest_mm = -1.0F;
     for (const Joint j : {Joint::index_intermediate, Joint::index_distal, Joint::index_tip,
-                          Joint::middle_intermediate, Joint::middle_distal, Joint::middle_tip}) {
+                          Joint::middle_intermediate, Joint::middle_distal, Joint::middle_tip,
+                          Joint::ring_intermediate, Joint::ring_distal, Joint::ring_tip}) {
         const TrackedPoint& point = hand.joint(j);
         if (thumb.valid && point.valid && thumb.position_mm.allFinite() &&
             point.position_mm.allFinite()) {

@@ -34,8 +34,8 @@ struct MotionSample {
     /// Of index to little finger; joints alone say it.
     std::array<Flexion, kFingerCount> flexion{};
     float grab = -1.0F;                 ///< 0 open .. 1 fist; -1 = unknown
-    float thumb_to_fingers_mm = -1.0F;  ///< tip to the nearest joint of index and middle finger
-                                        ///< beyond their knuckles; -1 = unknown
+    float thumb_to_fingers_mm = -1.0F;  ///< tip to the nearest joint of index, middle and ring
+                                        ///< finger beyond the knuckles; -1 = unknown
     Vec3f thumb_along = Vec3f::Zero();  ///< unit, to the thumb's tip; zero = unknown
     /// Thumb and index tip as seen from the index knuckle, so that the arm's motion drops out.
     Vec3f thumb_from_knuckle_mm = Vec3f::Zero();

@@ -23,8 +23,8 @@ constexpr float kStraightDeg = 50.0F;
 constexpr float kHalfDeg = 130.0F;
 constexpr float kUnfoldedDeg = 80.0F;
 constexpr float kFoldedDeg = 165.0F;
-// Thumb tip to the nearest joint of index and middle finger, shares of the hand's length: measured
-// 0.04..0.2 on a fist, 0.3..0.5 of thumbs that are shown.
+// Thumb tip to the nearest joint of index, middle and ring finger, shares of the hand's length:
+// measured 0.04..0.2 of thumbs on folded fingers, 0.3..0.5 of thumbs that are shown.
 constexpr float kThumbIn = 0.15F;
 constexpr float kThumbInNoMore = 0.30F;
 constexpr float kThumbOutFrom = 0.15F;
@@ -90,7 +90,7 @@ float score_of(GestureType pose, const MotionSample& hand) {
         case GestureType::open_palm: return std::min(fingers(hand, 4), thumb_out(hand));
         case GestureType::fist: return std::min(fingers(hand, 0), thumb_in(hand));
         case GestureType::point: return fingers(hand, 1);
-        case GestureType::victory: return fingers(hand, 2);
+        case GestureType::victory: return std::min(fingers(hand, 2), thumb_in(hand));
         case GestureType::thumb_up:
         case GestureType::thumb_down: {
             const float up =

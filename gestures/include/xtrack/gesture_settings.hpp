@@ -205,8 +205,9 @@ struct GestureSettings {
     /// 0..5000. Measured: grabs reach out at 800 mm/s, and are at 50..180 mm/s 200 ms later.
     double grab_palm_mmps = 200.0;
     double grab_settle_ms = 400.0;
-    /// The thumb lies on index or middle finger: its tip is at most this share of the hand's length
-    /// from their nearest joint. 0.05..1. Measured: grabs 0.06..0.17, shown thumbs 0.3..0.5.
+    /// The thumb lies on the fingers: its tip is at most this share of the hand's length from the
+    /// nearest joint of index, middle and ring finger. 0.05..1. Measured: grabs 0.06..0.17, shown
+    /// thumbs 0.3..0.5.
     double grab_thumb_share = 0.19;
 
     // --- tap -------------------------------------------------------------------------------------

@@ -70,6 +70,13 @@ TEST(Pose, ARelaxedHandShowsNone) {
     }
 }
 
+TEST(Pose, TwoFingersAndTheThumbAreThreeAndNoVictory) {
+    Noise noise(1);
+    const Hand hand = hand_of(Bent{0, {10, 15, 190, 190}, 1.0}, kFingersUp, noise);
+    const auto sample = recognise::sample_of(hand, Stamp{}, Duration::zero());
+    EXPECT_EQ(recognise::pose_score(GestureType::victory, sample), 0.0);
+}
+
 TEST(Pose, BeginsUpdatesAndEnds) {
     Bent later = pointing(2000);
     Stage stage(poses());
