@@ -84,7 +84,7 @@ const char* what_is_kept(const RecorderSetup& setup) {
         case RecordWhat::images: return "every image of the camera";
         case RecordWhat::depth:
             return setup.hand_only ? "depth of the hands alone" : "every depth image";
-        case RecordWhat::joints: return "positions of palms and fingertips, no images";
+        case RecordWhat::joints: return "positions of hands, no images";
     }
     return "";
 }
