@@ -239,7 +239,7 @@ TEST_F(Eval, CountsFingersOfStills) {
                   .status,
               0);
     // Five fingers are spread in all of them; the last shows nothing at all.
-    ASSERT_TRUE(cv::imwrite(stills + "/depth/000046.png", cv::Mat::zeros(480, 640, CV_16UC1)));
+    ASSERT_TRUE(cv::imwrite(stills + "/depth/000046.png", cv::Mat::zeros(240, 320, CV_16UC1)));
     set_text(stills + "/poses.csv",
              "frame,pose,extended_fingers,hand_present\n0,,5,1\n10,,5,1\n20,,4,1\n30,,1,1\n"
              "40,,,1\n45,,,0\n46,,,0\n");
