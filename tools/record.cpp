@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/commands.hpp"
+#include "tools/interrupt.hpp"
 #include "tools/live_source.hpp"
 #include "tools/record/label_input.hpp"
 #include "tools/record/recorder.hpp"
@@ -84,7 +85,7 @@ const char* what_is_kept(const RecorderSetup& setup) {
         case RecordWhat::images: return "every image of the camera";
         case RecordWhat::depth:
             return setup.hand_only ? "depth of the hands alone" : "every depth image";
-        case RecordWhat::joints: return "positions of palms and fingertips, no images";
+        case RecordWhat::joints: return "positions of hands, no images";
     }
     return "";
 }
@@ -121,6 +122,7 @@ void print_outcome(const RecordOptions& options, const RecorderSetup& setup,
 /// Plays the source, and keeps what comes until it ends, is interrupted, or cannot be written.
 int record_to(Recorder& recorder, Session& session, const RecordOptions& options,
               const RecorderSetup& setup, LabelInput& labels) {
+    const NoteInterrupt until_stored;  // what play() takes for the end must not end the last steps
     Result<void> stored;
     std::optional<Stamp> first;
     Stamp last;

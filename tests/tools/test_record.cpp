@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -45,18 +46,16 @@ class Record : public testing::Test {
 };
 
 TEST_F(Record, ReplaysToTheBitAsItWent) {
-    for (const char* source : {"sim", "sim:webcam-30"}) {
+    // A rolling shutter and colours: rows that saw two patterns, grey patterns in colour images.
+    for (const auto& [source, seconds] : {std::pair{"sim:webcam-30", "5"}, {"sim", "2"}}) {
         const std::string out = at(source);
         const Outcome live = xtrack_command(
-            {"record", source, "--fast", "--seconds", "5.5", "--out", out, "--json"});
+            {"record", source, "--fast", "--seconds", seconds, "--out", out, "--json"});
         ASSERT_EQ(live.status, 0) << live.err;
-        EXPECT_THAT(live.out, HasSubstr("swipe"));
         EXPECT_THAT(live.out, HasSubstr("{\"type\":\"recording\",\"folder\":"));
-        const Outcome again = xtrack_command({"replay", out, "--json"});
-        auto before = events_of(live.out);
-        auto after = events_of(again.out);
-        EXPECT_GE(before.size(), 3U) << source;
-        EXPECT_EQ(before, after) << source;
+        const auto before = events_of(live.out);
+        EXPECT_GE(before.size(), 2U) << source;
+        EXPECT_EQ(before, events_of(xtrack_command({"replay", out, "--json"}).out)) << source;
     }
 }
 
@@ -100,27 +99,35 @@ TEST_F(Record, JointsComeBackAsTheyWere) {
 TEST_F(Record, AnonymousDepthIsOfTheHandAlone) {
     ASSERT_EQ(
         xtrack_command({"record", kSwipe, "--fast", "--anonymise", "--out", at("rec")}).status, 0);
-    const auto reader = RecordingReader::open(at("rec"));
-    ASSERT_TRUE(reader.ok()) << reader.error().message;
-    EXPECT_EQ(reader->kind(), RecordingKind::depth);
-    const auto known = [&](std::size_t index) {
-        DepthFrame depth;
-        EXPECT_TRUE(reader->read_depth(index, depth).ok());
-        int count = 0;
-        for (int y = 0; y < depth.depth.height(); ++y) {
-            for (int x = 0; x < depth.depth.width(); ++x) {
-                count += depth.depth.at(x, y) != 0 ? 1 : 0;
+    ASSERT_EQ(
+        xtrack_command({"record", kSwipe, "--fast", "--what", "depth", "--out", at("all")}).status,
+        0);
+    const auto hand = RecordingReader::open(at("rec"));
+    const auto all = RecordingReader::open(at("all"));
+    ASSERT_TRUE(hand.ok()) << hand.error().message;
+    ASSERT_TRUE(all.ok()) << all.error().message;
+    ASSERT_EQ(hand->kind(), RecordingKind::depth);
+    ASSERT_EQ(hand->entries().size(), all->entries().size());
+    for (std::size_t i = 0; i < all->entries().size(); i += 10) {
+        DepthFrame kept;
+        DepthFrame whole;
+        ASSERT_TRUE(hand->read_depth(i, kept).ok());
+        ASSERT_TRUE(all->read_depth(i, whole).ok());
+        int known = 0;
+        int seen = 0;
+        int changed = 0;
+        for (int y = 0; y < whole.depth.height(); ++y) {
+            for (int x = 0; x < whole.depth.width(); ++x) {
+                const auto value = kept.depth.at(x, y);
+                known += value != 0 ? 1 : 0;
+                seen += whole.depth.at(x, y) != 0 ? 1 : 0;
+                changed += value != 0 && value != whole.depth.at(x, y) ? 1 : 0;
             }
         }
-        return static_cast<double>(count) / (depth.depth.width() * depth.depth.height());
-    };
-    EXPECT_EQ(known(0), 0.0);
-    double most = 0.0;
-    for (std::size_t i = 0; i < reader->entries().size(); ++i) {
-        most = std::max(most, known(i));
+        EXPECT_EQ(changed, 0) << i;
+        EXPECT_GT(known, 300) << i;
+        EXPECT_LT(known, seen / 5) << i;
     }
-    EXPECT_GT(most, 0.01);
-    EXPECT_LT(most, 0.2);
     EXPECT_THAT(xtrack_command({"replay", at("rec")}).out, HasSubstr("swipe_left"));
     const Outcome images =
         xtrack_command({"record", "--anonymise", "--what", "images", "--out", at("no")});
@@ -133,15 +140,30 @@ TEST_F(Record, AnonymousDepthIsOfTheHandAlone) {
 TEST_F(Record, TakesLabelsFromAPipe) {
     const std::string pipe = at("lines");
     ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    const auto images = [&] {  // that are stored so far
+        for (const auto& part : fs::directory_iterator(folder_.path())) {
+            if (part.path().extension() == ".part" && fs::exists(part.path() / "frames.csv")) {
+                const std::string list = text_of(part.path() / "frames.csv");
+                return std::count(list.begin(), list.end(), '\n') - 1;
+            }
+        }
+        return std::ptrdiff_t{0};
+    };
+    const auto wait_for = [&](std::ptrdiff_t count) {
+        for (int i = 0; i < 2000 && images() < count; ++i) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+    };
     std::thread writer([&] {
         std::ofstream lines(pipe);
+        wait_for(2);
         lines << "begin swipe_left right\n" << std::flush;
-        std::this_thread::sleep_for(std::chrono::milliseconds(400));
+        wait_for(12);
         lines << "end\nbegin pinch\nbegin nonsense\nfoo\nend push\n" << std::flush;
     });
     const Outcome outcome = interrupted_command(
-        {"record", kSwipe, "--out", at("rec"), "--events", "none"}, SIGINT,
-        [&](const std::string&) { return fs::exists(at("rec")); }, std::chrono::seconds(20),
+        {"record", "sim", "--seconds", "3", "--out", at("rec"), "--events", "none"}, 0,
+        [&](const std::string&) { return fs::exists(at("rec")); }, std::chrono::seconds(60),
         pipe.c_str());
     writer.join();
     EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -155,7 +177,7 @@ TEST_F(Record, TakesLabelsFromAPipe) {
     ASSERT_EQ(labels->size(), 2U);
     EXPECT_EQ(labels->at(0).gesture, "swipe_left");
     EXPECT_EQ(labels->at(0).hand, Chirality::right);
-    EXPECT_GE(to_seconds(labels->at(0).end - labels->at(0).start), 0.15);
+    EXPECT_GE(to_seconds(labels->at(0).end - labels->at(0).start), 0.1);
     EXPECT_EQ(labels->at(1).gesture, "pinch");
     EXPECT_EQ(labels->at(1).start, labels->at(0).end);
     // What was open at the end ended with it.
