@@ -37,11 +37,16 @@ void follow(const Sequence& sequence, Tracked& tracked, const auto& take) {
     }
 }
 
-/// The name of the machine that decides a gesture begins the gesture's name: swipe of swipe_left.
+/// Whether a machine decides a gesture: swipe of swipe_left, tap of double_tap, push of pull.
+bool decides(const std::string& machine, const std::string& gesture) {
+    return gesture.starts_with(machine) || gesture.ends_with("_" + machine) ||
+           (gesture == "pull" && machine == "push");
+}
+
 std::string why_missed(const GestureLabel& label, std::span<const Refusal> refusals) {
     for (auto r = refusals.rbegin(); r != refusals.rend(); ++r) {
         if (r->stamp >= label.start && r->stamp <= label.end + kAfterLabel &&
-            label.gesture.starts_with(r->machine)) {
+            decides(r->machine, label.gesture)) {
             return r->why;
         }
     }

@@ -24,7 +24,7 @@ struct Finding {
     bool missed = false;
     bool wrong_hand = false;
     bool strange = false;  ///< a stranger's
-    /// The movement fulfils the plain definition (swipes, pushes and pulls; false of others).
+    /// The movement fulfils the plain definition (definitions::fulfilled_before()).
     bool by_definition = false;
     std::string why_not;  ///< missed: what its machine said last
 };
