@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <optional>
 
 #include <fmt/format.h>
 #include <xtrack/gesture_recogniser.hpp>
@@ -166,7 +165,7 @@ Result<Tally> run(const Sequence& sequence, const GestureSettings& settings) {
     };
     std::vector<GestureEvent> heard;  // of hands that may act
     Tally of_strangers;
-    std::optional<std::size_t> owner;
+    bool owned = false;  // by one who has been there ever since
     const auto take = [&](std::span<const GestureEvent> events) {
         for (const GestureEvent& event : events) {
             if (event.type == GestureType::hand) {
@@ -178,11 +177,8 @@ Result<Tally> run(const Sequence& sequence, const GestureSettings& settings) {
             if (event.type == GestureType::engage) {
                 if (begins) {
                     ++of_strangers.engagements;
-                    of_strangers.owner_changes +=
-                        strange && owner && !sequence.strange[*owner] ? 1 : 0;
-                    owner = hand;
-                } else if (event.phase != EventPhase::update && owner == hand) {
-                    owner.reset();
+                    of_strangers.owner_changes += strange && owned ? 1 : 0;
+                    owned = owned || !strange;
                 }
             } else if (!strange) {
                 heard.push_back(event);

@@ -38,7 +38,7 @@ struct Tally {
     int sequences = 0;
     int false_events = 0;    ///< of hands that were listened to
     int strange_events = 0;  ///< of hands that should not have been
-    int owner_changes = 0;   ///< a stranger took a session that was another's
+    int owner_changes = 0;   ///< a stranger took the session after its owner had, who never left
     int engagements = 0;
     int short_of_definition = 0;
 
