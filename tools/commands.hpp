@@ -24,6 +24,7 @@ void add_decode(CLI::App& app, int& exit_status);
 void add_demo(CLI::App& app, int& exit_status);
 void add_eval(CLI::App& app, int& exit_status);
 void add_methods(CLI::App& app, int& exit_status);
+void add_record(CLI::App& app, int& exit_status);
 void add_replay(CLI::App& app, int& exit_status);
 void add_run(CLI::App& app, int& exit_status);
 

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/control.hpp"
 
-#include <array>
-#include <cerrno>
-#include <csignal>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -13,36 +10,11 @@
 #include "tools/settings_option.hpp"
 #include "tools/stream.hpp"
 
-#ifndef _WIN32
-#include <poll.h>
-#include <unistd.h>
-#endif
-
 namespace xtrack::tools {
 
 namespace {
 
 constexpr std::size_t kMostLine = 256;
-
-// What has come on standard input, if anything; nothing at its end.
-std::optional<std::string> read_some() {
-#ifdef _WIN32
-    return std::nullopt;
-#else
-    pollfd in{STDIN_FILENO, POLLIN, 0};
-    if (::poll(&in, 1, 0) <= 0) {
-        return "";
-    }
-    std::array<char, kMostLine> bytes{};
-    const ssize_t count = ::read(STDIN_FILENO, bytes.data(), bytes.size());
-    if (count < 0 && (errno == EINTR || errno == EAGAIN)) {
-        return "";
-    }
-    return count > 0 ? std::optional<std::string>(
-                           std::string(bytes.data(), static_cast<std::size_t>(count)))
-                     : std::nullopt;
-#endif
-}
 
 bool is_long(const std::string& line) {
     if (line.size() <= kMostLine) {
@@ -66,20 +38,13 @@ double percent_with_depth(const DepthFrame& depth) {
 
 }  // namespace
 
-Control::Control() {
-#ifndef _WIN32
-    // In the background of a shell, reading would stop the program: then there is nothing to read.
-    std::signal(SIGTTIN, SIG_IGN);
-#endif
-}
-
 void Control::poll(Session& session, const PipelineView& view) {
     paper_ = view.paper != nullptr ? view.paper : paper_;
     if (!open_) {
         return;
     }
     if (pending_.find('\n') == std::string::npos) {
-        const std::optional<std::string> some = read_some();
+        const auto some = input_.read_some();
         open_ = some.has_value();
         pending_ += some.value_or("\n");
     }
@@ -102,6 +67,16 @@ void Control::take(std::string line, Session& session) const {
         line.pop_back();
     }
     if (line.empty()) {
+        return;
+    }
+    if (is_gesture_setting(line)) {
+        GestureSettings gestures = session.gesture_settings();
+        auto changed = apply_gesture_settings({line}, gestures);
+        if (changed) {
+            changed = session.set_gesture_settings(gestures);
+        }
+        print_error(changed ? fmt::format("{}: from the next image on\n", line)
+                            : fmt::format("xtrack: {}\n", changed.error().message));
         return;
     }
     const DecodeSettings before = session.decode_settings();

@@ -5,6 +5,8 @@
 
 #include <xtrack/session.hpp>
 
+#include "tools/standard_input.hpp"
+
 namespace xtrack::tools {
 
 /// `--control`: reads NAME=VALUE lines from standard input while a session runs, and says on stderr
@@ -13,13 +15,13 @@ namespace xtrack::tools {
 /// @thread that of the session
 class Control {
  public:
-    Control();
     /// Takes what has come; never waits. Lines that are no setting are named and passed over.
     void poll(Session& session, const PipelineView& view);
 
  private:
     void take(std::string line, Session& session) const;
 
+    StandardInput input_;
     const PaperDecoder* paper_ = nullptr;  // on hold no view has it
     std::string pending_;                  // a line whose end has not come
     bool skipping_ = false;                // the rest of a line that is too long

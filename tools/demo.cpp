@@ -103,8 +103,8 @@ nlohmann::ordered_json to_json(const Scored& scored) {
             {"found", r.score.correct},
             {"false", r.score.false_events()},
             {"wrong_hand", r.score.wrong_hand},
-            {"after_commit_ms_p50", number(percentile(r.after_commit_ms, 0.5))},
-            {"after_commit_ms_p95", number(percentile(r.after_commit_ms, 0.95))},
+            {"after_commit_ms_p50", number(percentile(r.score.from_commit_ms, 0.5))},
+            {"after_commit_ms_p95", number(percentile(r.score.from_commit_ms, 0.95))},
             {"depth_rms_mm_p50", number(percentile(r.depth_rms_mm, 0.5))},
             {"depth_off_share_p50", number(percentile(r.depth_off, 0.5))},
             {"depth_missing_share_p50", number(percentile(r.depth_missing, 0.5))},
@@ -136,9 +136,9 @@ void print_table(const std::vector<Scored>& all) {
     row("  of these, right gesture but wrong hand",
         [](const TrialResult& r) { return fmt::to_string(r.score.wrong_hand); });
     row("decided after the definition was met, median",
-        [](const TrialResult& r) { return cell(percentile(r.after_commit_ms, 0.5), " ms"); });
+        [](const TrialResult& r) { return cell(percentile(r.score.from_commit_ms, 0.5), " ms"); });
     row("  95 %",
-        [](const TrialResult& r) { return cell(percentile(r.after_commit_ms, 0.95), " ms"); });
+        [](const TrialResult& r) { return cell(percentile(r.score.from_commit_ms, 0.95), " ms"); });
     const bool live = all.front().result.statistics.latency.count > 0;
     if (live) {
         row("latency, sensor to callback, median", [](const TrialResult& r) {
@@ -167,7 +167,7 @@ void print_trial(const char* preset, std::size_t seed, const TrialResult& result
     fmt::print("{:<10} seed {:>2}: {} of {} found", preset, seed, result.score.correct,
                result.score.labelled);
     for (const JudgedEvent& judged : result.events) {
-        if (judged.verdict != Verdict::correct && judged.verdict != Verdict::allowed) {
+        if (is_false(judged.verdict)) {
             fmt::print("; {} {} at {:.2f} s", to_string(judged.verdict), name_of(judged.event),
                        static_cast<double>(judged.event.sensor.ns) * 1e-9);
         }

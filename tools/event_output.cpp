@@ -69,6 +69,34 @@ void print_event(std::FILE* out, EventFormat format, const GestureEvent& event, 
     std::fflush(out);
 }
 
+void print_trace(std::FILE* out, EventFormat format, const RecogniserTrace& line) {
+    if (format == EventFormat::jsonl) {
+        const Json json = {{"type", "why"},
+                           {"t_us", line.stamp.us()},
+                           {"hand_id", line.hand_id},
+                           {"machine", line.machine},
+                           {"from", line.from},
+                           {"event", line.event},
+                           {"to", line.to},
+                           {"why", *line.why == '\0' ? Json(nullptr) : Json(line.why)},
+                           {"measured", rounded(static_cast<float>(line.measured), 100.0)},
+                           {"limit", rounded(static_cast<float>(line.limit), 100.0)}};
+        fmt::print(out, "{}\n", json.dump());
+        return;
+    }
+    std::string text = fmt::format("{:9.3f} s    {}, hand {}: {} -> {} ({})",
+                                   static_cast<double>(line.stamp.ns) * 1e-9, line.machine,
+                                   line.hand_id, line.from, line.to, line.event);
+    if (*line.why != '\0') {
+        text += fmt::format("; {}", line.why);
+        // Some reasons have nothing to measure.
+        if (line.measured != 0.0 || line.limit != 0.0) {
+            text += fmt::format(": {:.6g}, limit {:.6g}", line.measured, line.limit);
+        }
+    }
+    fmt::print(out, "{}\n", text);
+}
+
 std::string to_json(const HandFrame& hands, const Hand& hand) {
     Json tips = Json::array();
     for (const TrackedPoint& tip : hand.fingertips) {

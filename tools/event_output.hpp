@@ -19,6 +19,9 @@ enum class EventFormat { none, text, jsonl };
 [[nodiscard]] bool worth_a_text_line(const GestureEvent& event);
 
 /// Prints events to `out`, each as it happens (flushed).
+/// One line of the why-not trace, as print_event() prints events.
+void print_trace(std::FILE* out, EventFormat format, const RecogniserTrace& line);
+
 void print_event(std::FILE* out, EventFormat format, const GestureEvent& event, Pace pace);
 
 /// One line of JSON a hand: `{"type":"hand_pose",...}`, in the coordinates of `hands`.

@@ -31,6 +31,7 @@ int run(int argc, char** argv) {
     xtrack::tools::add_run(app, exit_status);
     xtrack::tools::add_methods(app, exit_status);
     xtrack::tools::add_replay(app, exit_status);
+    xtrack::tools::add_record(app, exit_status);
     xtrack::tools::add_eval(app, exit_status);
     xtrack::tools::add_demo(app, exit_status);
     xtrack::tools::add_corpus(app, exit_status);

@@ -6,7 +6,6 @@
 #include <xtrack/recording.hpp>
 
 #include "tools/commands.hpp"
-#include "tools/settings_option.hpp"
 #include "tools/stream.hpp"
 
 namespace xtrack::tools {
@@ -19,18 +18,12 @@ void add_replay(CLI::App& app, int& exit_status) {
     command->add_option("REC", *folder, "Folder of the recording")->required();
     add_stream_options(*command, *stream);
     command->callback([=, &exit_status] {
-        SessionOptions options;
-        options.pace = Pace::replay;
-        if (const auto chosen = choose_gestures(stream->gestures, options.gestures); !chosen) {
-            exit_status = usage(chosen.error());
+        const auto options = session_options(*stream, Pace::replay);
+        if (!options) {
+            exit_status = usage(options.error());
             return;
         }
-        choose_decoding(*stream, options);
-        if (const auto set = apply_settings(stream->changes, options.decode); !set) {
-            exit_status = usage({set.error().code, "--set " + set.error().message});
-            return;
-        }
-        auto session = Session::open(*folder, options);
+        auto session = Session::open(*folder, *options);
         if (!session) {
             exit_status = fail(with_mode(session.error()));
             return;
@@ -41,7 +34,7 @@ void add_replay(CLI::App& app, int& exit_status) {
         }
         const auto recording = RecordingReader::open(*folder);
         const std::size_t items = recording ? recording->entries().size() : 0;
-        exit_status = play(*session, *stream, options.pace, true, items);
+        exit_status = play(*session, *stream, options->pace, true, items);
         if (exit_status == 0 && recording && recording->kind() == RecordingKind::fringe &&
             session->statistics().depth_frames == 0) {
             exit_status = fail(no_complete_set(*recording));

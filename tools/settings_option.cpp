@@ -58,7 +58,9 @@ void add_settings_option(CLI::App& command, std::vector<std::string>& changes,
 
 namespace {
 
-Result<void> apply(const std::vector<std::string>& changes, const char* example, auto& settings) {
+template <typename Settings>
+Result<void> apply(const std::vector<std::string>& changes, const char* example,
+                   Settings& settings) {
     for (const std::string& change : changes) {
         const std::size_t equals = change.find('=');
         if (equals == std::string::npos) {
@@ -68,7 +70,7 @@ Result<void> apply(const std::vector<std::string>& changes, const char* example,
         if (auto set = set_field(settings, std::string_view(change).substr(0, equals),
                                  std::string_view(change).substr(equals + 1));
             !set) {
-            return Error{set.error().code, set.error().message};
+            return set;
         }
     }
     return {};
@@ -80,10 +82,16 @@ Result<void> apply_settings(const std::vector<std::string>& changes, DecodeSetti
     return apply(changes, "min_modulation=8", settings);
 }
 
+bool is_gesture_setting(const std::string& change) {
+    const std::string name = change.substr(0, change.find('='));
+    return std::ranges::any_of(gesture_fields(),
+                               [&](const GestureField& field) { return name == field.name; });
+}
+
 void add_gesture_settings_option(CLI::App& command, std::vector<std::string>& changes) {
-    std::string text = "Changes a threshold of the recognisers:";
+    std::string text = "Changes a setting of the gestures:";
     for (const GestureField& field : gesture_fields()) {
-        if (!field.is_switch) {
+        if (!field.is_switch) {  // --gestures chooses
             text +=
                 fmt::format("\n{} ({} to {}; else {})", field.name, base::number_text(field.least),
                             base::number_text(field.most), base::number_text(field.standard()));
@@ -94,7 +102,10 @@ void add_gesture_settings_option(CLI::App& command, std::vector<std::string>& ch
 
 Result<void> apply_gesture_settings(const std::vector<std::string>& changes,
                                     GestureSettings& settings) {
-    return apply(changes, "swipe_speed_mmps=250", settings);
+    if (auto set = apply(changes, "swipe_speed_mmps=350", settings); !set) {
+        return set;
+    }
+    return validate(settings);
 }
 
 Result<void> check_settings(const std::vector<std::string>& changes, DecodeMethod method,

@@ -22,13 +22,6 @@ void add_settings_option(CLI::App& command, std::vector<std::string>& changes,
 [[nodiscard]] Result<void> apply_settings(const std::vector<std::string>& changes,
                                           DecodeSettings& settings);
 
-/// The same of the recognisers' thresholds; which gestures there are, --gestures says.
-void add_gesture_settings_option(CLI::App& command, std::vector<std::string>& changes);
-
-/// @errors invalid_argument: what is no NAME=VALUE, a name that is none, a value out of range
-[[nodiscard]] Result<void> apply_gesture_settings(const std::vector<std::string>& changes,
-                                                  GestureSettings& settings);
-
 /// Whether all of them mean something to what decodes.
 /// @param method Session::method(), or how a command decodes
 /// @param uses whether the decoder at hand looks at a field
@@ -36,5 +29,15 @@ void add_gesture_settings_option(CLI::App& command, std::vector<std::string>& ch
 [[nodiscard]] Result<void> check_settings(const std::vector<std::string>& changes,
                                           DecodeMethod method,
                                           const std::function<bool(const DecodeField&)>& uses);
+
+/// Whether it changes a setting of the gestures, switches included.
+[[nodiscard]] bool is_gesture_setting(const std::string& change);
+
+/// `--set NAME=VALUE` of gestures; its help lists every threshold with range and standard value.
+void add_gesture_settings_option(CLI::App& command, std::vector<std::string>& changes);
+
+/// @errors invalid_argument: as apply_settings(), and values that contradict each other
+[[nodiscard]] Result<void> apply_gesture_settings(const std::vector<std::string>& changes,
+                                                  GestureSettings& settings);
 
 }  // namespace xtrack::tools

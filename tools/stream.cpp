@@ -61,9 +61,11 @@ class StopOnInterrupt {
 }  // namespace
 
 void add_stream_options(CLI::App& command, StreamOptions& options) {
-    command.add_option("--gestures", options.gestures,
-                       "Comma-separated list of what is recognised: " + known_gestures() +
-                           " (default: all but wave; without rig.yaml never pinch)");
+    command.add_option(
+        "--gestures", options.gestures,
+        "Comma-separated list of what is recognised: " + known_gestures() +
+            " (default: swipe, push, pull, pinch, grab, tap, circle; without rig.yaml "
+            "those that need no millimetres)");
     command
         .add_option_function<std::string>(
             "--events", [&options](const std::string& name) { options.events = format_of(name); },
@@ -78,6 +80,9 @@ void add_stream_options(CLI::App& command, StreamOptions& options) {
         ->check(CLI::IsMember({"jsonl", "none"}))
         ->default_str("none");
     add_settings_option(command, options.changes, [](const DecodeField&) { return true; });
+    command.add_flag("--why", options.why,
+                     "Print every transition of the gestures' state machines and every reason why "
+                     "a candidate was none, between the events");
     command.add_flag("--stats", options.statistics,
                      "At the end, print the time of every stage on stderr");
     command
@@ -123,32 +128,62 @@ Result<void> choose_gestures(const std::optional<std::string>& list, GestureSett
     return {};
 }
 
-void choose_decoding(const StreamOptions& stream, SessionOptions& options) {
+Result<SessionOptions> session_options(const StreamOptions& stream, Pace pace) {
+    SessionOptions options;
+    options.pace = pace;
+    if (const auto chosen = choose_gestures(stream.gestures, options.gestures); !chosen) {
+        return chosen.error();
+    }
     options.use_rig = !stream.without_rig;
     if (stream.mode) {
         options.method = DecodeMethod::paper;
         options.decode.motion = MotionHandling::off;  // each image for itself, as in the paper
         options.decode.mode = *stream.mode;
     }
+    std::vector<std::string> decoder;
+    std::vector<std::string> gestures;
+    for (const std::string& change : stream.changes) {
+        (is_gesture_setting(change) ? gestures : decoder).push_back(change);
+    }
+    for (const auto& set : {apply_settings(decoder, options.decode),
+                            apply_gesture_settings(gestures, options.gestures)}) {
+        if (!set) {
+            return Error{set.error().code, "--set " + set.error().message};
+        }
+    }
+    return options;
 }
 
 namespace {
 
+/// A gesture that was asked for by its name and needs millimetres; empty: none.
+std::string in_vain(const StreamOptions& options) {
+    const std::string list = ',' + options.gestures.value_or("") + ',';
+    for (std::size_t t = 0; t < kGestureTypeCount; ++t) {
+        const auto type = static_cast<GestureType>(t);
+        if (needs_millimetres(type) &&
+            list.find(std::string(",") + to_string(type) + ',') != std::string::npos) {
+            return to_string(type);
+        }
+    }
+    return {};
+}
+
 Result<void> check_metric(const Session& session, const StreamOptions& options) {
-    const bool pinch =
-        options.gestures && (',' + *options.gestures + ',').find(",pinch,") != std::string::npos;
     if (options.without_rig && session.metric()) {
         return Error{ErrorCode::invalid_argument,
                      "--without-rig: is for fringes, and the source has depth or joints; leave it "
                      "out"};
     }
-    if (!session.metric() && pinch) {
+    const std::string gesture = in_vain(options);
+    if (!session.metric() && !gesture.empty()) {
+        const char* mend = options.without_rig
+                               ? "needs millimetres; leave out --without-rig, or choose from"
+                               : "needs millimetres, and the source has no rig.yaml; add the "
+                                 "calibration, or choose from";
         return Error{ErrorCode::unsupported,
-                     options.without_rig
-                         ? "--gestures pinch: needs millimetres; leave out --without-rig, or "
-                           "choose from swipe, push, wave"
-                         : "--gestures pinch: needs millimetres, and the source has no rig.yaml; "
-                           "add the calibration, or choose from swipe, push, wave"};
+                     fmt::format("--gestures {}: {} swipe, push, pull, grab, circle, wave, raise",
+                                 gesture, mend)};
     }
     return {};
 }
@@ -175,6 +210,10 @@ int play(Session& session, const StreamOptions& options, Pace pace, bool whole, 
         options.json && options.events == EventFormat::text ? EventFormat::jsonl : options.events;
     session.subscribe(
         [format, pace](const GestureEvent& event) { print_event(stdout, format, event, pace); });
+    if (options.why) {
+        session.set_trace(
+            [format](const RecogniserTrace& line) { print_trace(stdout, format, line); });
+    }
     if (options.hands == EventFormat::jsonl) {
         session.subscribe_pipeline([](const PipelineView& view) {
             const HandFrame* hands =

@@ -19,7 +19,8 @@ struct StreamOptions {
     std::optional<std::string> gestures;
     EventFormat events = EventFormat::text;
     EventFormat hands = EventFormat::none;
-    std::vector<std::string> changes;  ///< of the decoder's settings, NAME=VALUE
+    std::vector<std::string> changes;  ///< of settings of decoder and gestures, NAME=VALUE
+    bool why = false;                  ///< the gestures' state machines tell what they do
     bool statistics = false;
     bool json = false;
     std::optional<CaptureMode> mode;  ///< wanted: fringes are unwrapped in space
@@ -34,8 +35,9 @@ void add_stream_options(CLI::App& command, StreamOptions& options);
 [[nodiscard]] Result<void> choose_gestures(const std::optional<std::string>& list,
                                            GestureSettings& settings);
 
-/// What `--mode` and `--without-rig` ask for, if they do.
-void choose_decoding(const StreamOptions& stream, SessionOptions& options);
+/// What the options ask of a session.
+/// @errors invalid_argument: a gesture or a setting that is none
+[[nodiscard]] Result<SessionOptions> session_options(const StreamOptions& stream, Pace pace);
 
 /// Whether the source allows what was asked for.
 /// @errors unsupported: a gesture that compares what is smaller than a hand, without a calibration;

@@ -99,7 +99,6 @@ void TrialResult::add(const TrialResult& other) {
     for (const auto& [name, one] : other.gestures) {
         gestures[name].add(one);
     }
-    append(after_commit_ms, other.after_commit_ms);
     append(depth_rms_mm, other.depth_rms_mm);
     append(depth_off, other.depth_off);
     append(depth_missing, other.depth_missing);
@@ -111,9 +110,7 @@ GestureSettings gestures_of(const TrialOptions& options) {
     if (options.gestures) {
         return *options.gestures;
     }
-    GestureSettings gestures;
-    gestures.pinch = options.use_rig;
-    return gestures;
+    return options.use_rig ? GestureSettings{} : without_millimetres({});
 }
 
 Result<TrialResult> run_trial(const TrialOptions& options, const TrialSetup& setup) {
@@ -169,9 +166,6 @@ Result<TrialResult> run_trial(const TrialOptions& options, const TrialSetup& set
     result.score = scorer.all();
     result.gestures = scorer.gestures();
     result.statistics = session->statistics();
-    for (const CommitDelay& delay : delays_after_commit(result.events, result.labels)) {
-        result.after_commit_ms.push_back(delay.ms);
-    }
     return result;
 }
 

@@ -12,8 +12,6 @@
 #include <xtrack/session.hpp>
 #include <xtrack/sim.hpp>
 
-#include "tools/commit_delay.hpp"
-
 namespace xtrack::tools {
 
 /// One simulated person before one simulated rig.
@@ -40,10 +38,9 @@ struct TrialResult {
     std::map<std::string, GestureScore> gestures;
     std::vector<JudgedEvent> events;
     std::vector<GestureLabel> labels;
-    std::vector<double> after_commit_ms;  ///< decision after the moment the definition is fulfilled
-    std::vector<double> depth_rms_mm;     ///< a measured frame: hand, pixels within 15 mm
-    std::vector<double> depth_off;        ///< share of the hand off by more
-    std::vector<double> depth_missing;    ///< share of the hand without depth
+    std::vector<double> depth_rms_mm;   ///< a measured frame: hand, pixels within 15 mm
+    std::vector<double> depth_off;      ///< share of the hand off by more
+    std::vector<double> depth_missing;  ///< share of the hand without depth
     std::vector<double> palm_error_mm;
     SessionStatistics statistics;
 

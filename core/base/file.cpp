@@ -183,7 +183,24 @@ Result<void> NewFolder::write(const fs::path& inside, std::string_view bytes) co
     if (auto ok = check_inside(target_, inside); !ok) {
         return ok;
     }
-    if (!write_plainly(temporary_ / inside, bytes)) {
+    if (!write_file(temporary_ / inside, bytes)) {
+        return io_error(target_ / inside, "cannot be written; is the disk full?");
+    }
+    return {};
+}
+
+Result<void> NewFolder::append(const fs::path& inside, std::string_view bytes) const {
+    if (auto ok = check_inside(target_, inside); !ok) {
+        return ok;
+    }
+    const fs::path file = temporary_ / inside;
+    std::error_code error;
+    const std::uintmax_t before = fs::exists(file, error) ? fs::file_size(file, error) : 0;
+    std::ofstream out(file, std::ios::binary | std::ios::app);
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    out.close();
+    if (!out) {
+        fs::resize_file(file, before, error);  // half a line would spoil those before it
         return io_error(target_ / inside, "cannot be written; is the disk full?");
     }
     return {};

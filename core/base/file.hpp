@@ -45,7 +45,11 @@ class NewFolder {
     // A name that does not stay inside (stays_inside()) is refused by both.
     /// Makes a folder inside, with those that it lies in.
     [[nodiscard]] Result<void> make_folder(const std::filesystem::path& inside) const;
-    /// Writes a file inside.
+    /// Adds to the end of a file inside, which is made where there is none: all of the bytes, or,
+    /// as far as the system lets it, none of them.
+    [[nodiscard]] Result<void> append(const std::filesystem::path& inside,
+                                      std::string_view bytes) const;
+    /// Writes a file inside, which is there whole or not at all, and replaces an older one.
     [[nodiscard]] Result<void> write(const std::filesystem::path& inside,
                                      std::string_view bytes) const;
     /// Gives the folder its name. @return an Error if something has appeared there meanwhile, which

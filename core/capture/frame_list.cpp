@@ -12,6 +12,8 @@ namespace xtrack::capture {
 namespace {
 
 constexpr base::CsvLimits kLimits{1024, 1'000'000, 32};
+constexpr const char* kCleanBegin = "clean_begin";
+constexpr const char* kCleanEnd = "clean_end";
 constexpr std::int64_t kMaxSequence = std::int64_t{1} << 53U;
 
 bool is_image_name(std::string_view file) {
@@ -30,6 +32,8 @@ struct Columns {
     std::size_t t_us = 0;
     std::size_t sequence = 0;
     std::size_t pattern = 0;
+    std::optional<std::size_t> clean_begin;  // both or neither
+    std::optional<std::size_t> clean_end;
 };
 
 Result<Columns> find_columns(const base::CsvReader& csv, bool with_patterns) {
@@ -52,7 +56,32 @@ Result<Columns> find_columns(const base::CsvReader& csv, bool with_patterns) {
         }
         *w.column = *found;
     }
+    columns.clean_begin = csv.column(kCleanBegin);
+    columns.clean_end = csv.column(kCleanEnd);
+    if (with_patterns && columns.clean_begin.has_value() != columns.clean_end.has_value()) {
+        return csv.required_column(columns.clean_begin ? kCleanEnd : kCleanBegin).error();
+    }
     return columns;
+}
+
+// Rows that saw the pattern and no other; both fields are empty where all did.
+Result<void> read_clean_rows(const base::CsvReader& csv, const Columns& columns,
+                             RecordingEntry& entry) {
+    if (!columns.clean_begin || !columns.clean_end ||
+        (csv.field(*columns.clean_begin).empty() && csv.field(*columns.clean_end).empty())) {
+        return {};
+    }
+    const auto begin = csv.int_field(*columns.clean_begin, 0, kMaxImageSide_px - 1);
+    if (!begin) {
+        return begin.error();
+    }
+    const auto end = csv.int_field(*columns.clean_end, *begin + 1, kMaxImageSide_px);
+    if (!end) {
+        return end.error();
+    }
+    entry.clean_row_begin = static_cast<int>(*begin);
+    entry.clean_row_end = static_cast<int>(*end);
+    return {};
 }
 
 Result<RecordingEntry> read_entry(const base::CsvReader& csv, const Columns& columns,
@@ -82,6 +111,11 @@ Result<RecordingEntry> read_entry(const base::CsvReader& csv, const Columns& col
             return pattern.error();
         }
         entry.pattern = static_cast<int>(*pattern);
+    }
+    if (patterns != 0) {
+        if (auto read = read_clean_rows(csv, columns, entry); !read) {
+            return read.error();
+        }
     }
     return entry;
 }
@@ -129,11 +163,22 @@ Result<std::vector<RecordingEntry>> parse_frame_list(std::string_view text, cons
     return entries;
 }
 
+std::string frame_list_head() {
+    return std::string("file,t_us,sequence,pattern,") + kCleanBegin + "," + kCleanEnd + "\n";
+}
+
+std::string frame_list_line(const RecordingEntry& e) {
+    const bool some = e.clean_row_end > 0;
+    return e.file + "," + std::to_string(e.stamp.us()) + "," + std::to_string(e.sequence) + "," +
+           (e.pattern == kUnknownPattern ? "" : std::to_string(e.pattern)) + "," +
+           (some ? std::to_string(e.clean_row_begin) : "") + "," +
+           (some ? std::to_string(e.clean_row_end) : "") + "\n";
+}
+
 std::string frame_list_text(const std::vector<RecordingEntry>& entries) {
-    std::string text = "file,t_us,sequence,pattern\n";
-    for (const RecordingEntry& e : entries) {
-        text += e.file + "," + std::to_string(e.stamp.us()) + "," + std::to_string(e.sequence) +
-                "," + (e.pattern == kUnknownPattern ? "" : std::to_string(e.pattern)) + "\n";
+    std::string text = frame_list_head();
+    for (const RecordingEntry& entry : entries) {
+        text += frame_list_line(entry);
     }
     return text;
 }

@@ -185,6 +185,16 @@ Result<RecordingReader> RecordingReader::read(const fs::path& folder) {
         return size.error();
     }
     c.image_size = *size;
+    for (const RecordingEntry& entry : c.entries) {
+        if (entry.clean_row_end > size->height) {
+            return Error{ErrorCode::malformed, list.string() + ": clean_end of " + entry.file +
+                                                   " is " + std::to_string(entry.clean_row_end) +
+                                                   ", the images have " +
+                                                   std::to_string(size->height) +
+                                                   " rows; give one of them or leave it "
+                                                   "empty"};
+        }
+    }
     if (c.has_rig && c.rig.camera.size != *size) {
         return Error{ErrorCode::malformed, (folder / "rig.yaml").string() + ": camera_size is " +
                                                text_of(c.rig.camera.size) + ", " +
@@ -244,8 +254,8 @@ Result<void> RecordingReader::read_frame(std::size_t index, Frame& out,
     out.stamp = entry.stamp;
     out.sequence = entry.sequence;
     out.pattern = entry.pattern;
-    out.clean_row_begin = 0;
-    out.clean_row_end = c.image_size.height;
+    out.clean_row_begin = entry.clean_row_begin;
+    out.clean_row_end = entry.clean_row_end > 0 ? entry.clean_row_end : c.image_size.height;
     return capture::decode_image(*bytes, file.string(), c.image_size, out.format, out.pixels);
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdio>
 #include <utility>
 #include <vector>
@@ -31,6 +32,22 @@ std::string image_name(std::size_t index) {
     char name[32];
     std::snprintf(name, sizeof name, "%06zu.png", index);
     return name;
+}
+
+constexpr const char* kFrameList = "frames.csv";
+
+// An image that is listed is there whole, whenever the program ends.
+Result<void> add_image(const base::NewFolder& folder, std::vector<RecordingEntry>& entries,
+                       RecordingEntry entry, std::string_view png) {
+    if (auto ok = folder.write(entry.file, png); !ok) {
+        return ok;
+    }
+    const std::string head = entries.empty() ? capture::frame_list_head() : std::string();
+    if (auto ok = folder.append(kFrameList, head + capture::frame_list_line(entry)); !ok) {
+        return ok;
+    }
+    entries.push_back(std::move(entry));
+    return {};
 }
 
 Error bad(const std::string& what) { return {ErrorCode::invalid_argument, what}; }
@@ -130,12 +147,14 @@ Result<void> RecordingWriter::add(const Frame& frame) {
         return png.error();
     }
     const std::string file = "frames/" + image_name(s.entries.size());
-    if (auto ok = s.folder.write(file, *png); !ok) {
-        return ok;
-    }
     s.size = frame.size();
-    s.entries.push_back({file, frame.stamp, frame.sequence, frame.pattern});
-    return {};
+    RecordingEntry entry{file, frame.stamp, frame.sequence, frame.pattern};
+    const bool all = frame.clean_row_begin <= 0 && frame.clean_row_end >= frame.height();
+    if (!all && frame.clean_row_begin < frame.clean_row_end) {
+        entry.clean_row_begin = std::max(frame.clean_row_begin, 0);
+        entry.clean_row_end = std::min(frame.clean_row_end, frame.height());
+    }
+    return add_image(s.folder, s.entries, std::move(entry), *png);
 }
 
 Result<void> RecordingWriter::add(const DepthFrame& depth) {
@@ -155,12 +174,9 @@ Result<void> RecordingWriter::add(const DepthFrame& depth) {
         return png.error();
     }
     const std::string file = "depth/" + image_name(s.entries.size());
-    if (auto ok = s.folder.write(file, *png); !ok) {
-        return ok;
-    }
     s.size = depth.depth.size();
-    s.entries.push_back({file, depth.stamp, depth.sequence, kUnknownPattern});
-    return {};
+    return add_image(s.folder, s.entries, {file, depth.stamp, depth.sequence, kUnknownPattern},
+                     *png);
 }
 
 Result<void> RecordingWriter::add_truth(ImageView<const std::uint16_t> depth,
@@ -213,6 +229,10 @@ Result<void> RecordingWriter::add_text(const std::string& name, const std::strin
     return state_->folder.write(inside, text);
 }
 
+const std::filesystem::path& RecordingWriter::folder() const noexcept {
+    return state_->folder.path();
+}
+
 Result<void> RecordingWriter::close() {
     State& s = *state_;
     if (s.entries.empty()) {
@@ -222,14 +242,10 @@ Result<void> RecordingWriter::close() {
     // What the reader would refuse is not written: its own judgement, so that they cannot differ.
     const std::string list = capture::frame_list_text(s.entries);
     const auto read_back =
-        capture::parse_frame_list(list, "frames.csv", static_cast<std::size_t>(s.patterns));
+        capture::parse_frame_list(list, kFrameList, static_cast<std::size_t>(s.patterns));
     if (!read_back) {
         s.folder.discard();
         return bad(read_back.error().message);
-    }
-    if (auto ok = s.folder.write("frames.csv", list); !ok) {
-        s.folder.discard();
-        return ok;
     }
     return s.folder.commit();
 }

@@ -80,7 +80,7 @@ Result<Processor> Processor::for_paper(const Rig& rig, const PatternSequence& pa
     }
     SessionOptions adapted = options;
     if (!metric) {
-        adapted.gestures.pinch = false;
+        adapted.gestures = without_millimetres(adapted.gestures);
         adapted.tracker.near_mm = adapted.tracker.far_mm = 0.0;
     }
     auto processor =

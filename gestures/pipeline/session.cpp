@@ -233,7 +233,7 @@ Result<void> Session::set_gesture_settings(const GestureSettings& settings) {
     if (!metric() && demands_of(settings).metric) {
         return Error{ErrorCode::unsupported,
                      "gesture settings: without a calibration there are no true millimetres, which "
-                     "pinch and its like need; switch them off"};
+                     "some of these gestures need; take without_millimetres() of them"};
     }
     const MutexLock lock(impl_->wishes_mutex);
     impl_->gesture_settings = settings;

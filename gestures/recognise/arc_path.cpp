@@ -89,6 +89,9 @@ bool ArcPath::add(const Vec3f& point_mm, Stamp now) noexcept {
     const Node& last = at(0);
     const float step_mm = (p - last.point_mm).norm();
     if (step_mm < kStepMm) {
+        if (count_ == 1) {
+            nodes_[newest_].stamp = now;  // the path begins where the rest ends
+        }
         return false;
     }
     const Node node{p, last.way_mm + static_cast<double>(step_mm), now};

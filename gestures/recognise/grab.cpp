@@ -280,6 +280,11 @@ GrabMachine::Event GrabMachine::judge(const Context& c, double strength, Refusal
 Refusal GrabMachine::spoiler(const Context& c) const {
     const GestureSettings& s = c.settings;
     const MotionSample& now = c.history.newest();
+    const std::size_t closed = c.history.count_within(c.sensor - closed_at_) - 1;
+    const double smear_mm = c.history.smear_mm(from_ms(s.velocity_window_ms), closed);
+    if (smear_mm > s.pinch_blur_mm) {
+        return {"the palm moved too fast to see fingers", smear_mm, s.pinch_blur_mm};
+    }
     const double thumb_mm = static_cast<double>(now.thumb_to_fingers_mm);
     const double reach_mm = s.grab_thumb_share * static_cast<double>(now.hand_length_mm);
     if (thumb_mm >= 0.0 && reach_mm > 0.0 && thumb_mm > reach_mm) {

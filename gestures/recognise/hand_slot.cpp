@@ -114,10 +114,12 @@ void HandSlot::update(Context& c, bool two_handed) {
         if (machine.holds() || c.out.all().size() != before) {
             take(machine);
         }
-        // A first stroke may become either; who has turned back twice does not swipe.
-        if (M::kRank == Rank::rhythm &&
-            ((c.settings.wave && machines.wave.swings()) || machines.circle.swings())) {
-            strongest = std::min(strongest, Rank::grip);
+        // A first stroke may become either; who has turned back twice, or gone round, does not
+        // swipe.
+        if constexpr (requires { machine.swings(); }) {
+            if (machine.sends(c.settings) && machine.swings()) {
+                strongest = std::min(strongest, Rank::grip);
+            }
         }
     });
     c.gate = gate;

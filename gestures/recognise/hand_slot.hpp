@@ -30,6 +30,7 @@ namespace xtrack::recognise {
 ///   - drop(c, reason, why): lost, taken, switched off: what is active is cancelled;
 ///   - finish(c): the stream is over: what is active ends;
 ///   - holds(): something is active;
+///   - swings(), of rhythms: what goes on is one, though not yet sent, and no stroke;
 ///   - sends(settings): what it would send next is switched on.
 /// The drag is one more, which needs to hear of the others' grip.
 struct Machines {

@@ -63,18 +63,22 @@ std::string gesture_wanted() {
     return names + "or x_ and a name of your own";
 }
 
+constexpr const char* kHandWanted = "give left, right or unknown";
+
+std::optional<Chirality> hand_of(std::string_view side) {
+    for (const Chirality hand : {Chirality::left, Chirality::right, Chirality::unknown}) {
+        if (side == to_string(hand)) {
+            return hand;
+        }
+    }
+    return std::nullopt;
+}
+
 Result<Chirality> read_hand(const base::CsvReader& csv, std::size_t column) {
-    const std::string_view side = csv.field(column);
-    if (side == "left") {
-        return Chirality::left;
+    if (const auto hand = hand_of(csv.field(column))) {
+        return *hand;
     }
-    if (side == "right") {
-        return Chirality::right;
-    }
-    if (side == "unknown") {
-        return Chirality::unknown;
-    }
-    return csv.error_at(column, "give left, right or unknown");
+    return csv.error_at(column, kHandWanted);
 }
 
 // Opens the text, finds `names` in its header, and calls `read` for every row.
@@ -332,6 +336,23 @@ std::string hand_truth_text(std::span<const HandTruth> truth) {
         text += '\n';
     }
     return text;
+}
+
+Result<GestureLabel> label_of(std::string_view gesture, std::string_view hand) {
+    if (!is_gesture(gesture)) {
+        return Error{
+            ErrorCode::invalid_argument,
+            "the gesture is " + base::quoted(std::string(gesture)) + "; " + gesture_wanted()};
+    }
+    const auto side = hand_of(hand);
+    if (!side) {
+        return Error{ErrorCode::invalid_argument,
+                     "the hand is " + base::quoted(std::string(hand)) + "; " + kHandWanted};
+    }
+    GestureLabel label;
+    label.gesture = gesture;
+    label.hand = *side;
+    return label;
 }
 
 Result<void> write_labels(const std::filesystem::path& file, std::span<const GestureLabel> labels) {

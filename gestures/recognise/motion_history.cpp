@@ -10,6 +10,8 @@ namespace xtrack::recognise {
 
 namespace {
 
+constexpr int kOpenFingers = 3;
+constexpr float kHalfClosed = 0.5F;
 constexpr float kStraight = 0.5F;     // extension: half-way out
 constexpr float kShortestMm = 10.0F;  // palm to fingertips; less has no direction
 // Thumb and index tip of an adult come no farther apart (0.85 of a hand of 205 mm; 3.7 times the
@@ -77,7 +79,12 @@ float MotionSample::outer_extension() const noexcept {
     return known > 0 ? sum / static_cast<float>(known) : -1.0F;
 }
 
-MotionSample sample_of(const Hand& hand, Stamp stamp, Duration span) noexcept {
+MotionSample sample_of(const Hand& seen, Stamp stamp, Duration span) noexcept {
+    // Joints that follow from proportions tell nothing that the tips do not.
+    Hand hand = seen;
+    if (!seen.articulated) {
+        hand.joints = {};
+    }
     MotionSample s;
     s.stamp = stamp;
     s.span = span;
@@ -93,7 +100,7 @@ MotionSample sample_of(const Hand& hand, Stamp stamp, Duration span) noexcept {
     // normal.
     s.facing = palm_facing(hand);
     s.facing_signed = hand.chirality != Chirality::unknown;
-    s.from_joints = std::ranges::any_of(hand.joints, &TrackedPoint::valid);
+    s.from_joints = seen.articulated;
     const float span_mm = s.from_joints || hand.palm_radius_mm <= 0.0F
                               ? kSpanMm
                               : std::min(kSpanMm, kSpanOfRadius * hand.palm_radius_mm);
@@ -108,7 +115,9 @@ MotionSample sample_of(const Hand& hand, Stamp stamp, Duration span) noexcept {
         s.flexion[static_cast<std::size_t>(f)] = flexion;
         bends_known = bends_known || flexion.whole_deg > kFlexionUnknown;
     }
-    if (bends_known || (!s.from_joints && hand.extended_fingers >= 0)) {
+    // A camera that finds few fingers on a hand that is no fist does not see that hand well.
+    if (bends_known || (!s.from_joints && (hand.extended_fingers >= kOpenFingers ||
+                                           hand.grab_value >= kHalfClosed))) {
         s.grab = std::clamp(hand.grab_value, 0.0F, 1.0F);
     }
     s.thumb_to_fingers_mm = thumb_to_fingers(hand, thumb);

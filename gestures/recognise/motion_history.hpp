@@ -53,7 +53,7 @@ struct MotionSample {
     [[nodiscard]] float outer_extension() const noexcept;
 };
 
-[[nodiscard]] MotionSample sample_of(const Hand& hand, Stamp stamp, Duration span) noexcept;
+[[nodiscard]] MotionSample sample_of(const Hand& seen, Stamp stamp, Duration span) noexcept;
 
 /// The last second of one hand, newest first. Fixed size; never allocates.
 class MotionHistory {

@@ -138,6 +138,7 @@ RaiseMachine::Rise RaiseMachine::measure(const Context& c) const {
 }
 
 void RaiseMachine::commit(const Context& c) {
+    not_before_ = c.sensor;  // a hand that stirs up there does not raise again
     GestureEvent e = event_of(c, GestureType::raise, EventPhase::begin);
     e.gesture_id = c.next_gesture_id++;
     e.onset = rise_.start;

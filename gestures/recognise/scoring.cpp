@@ -57,7 +57,11 @@ bool is_direction(GestureType type, std::string_view text) {
 struct Life {
     GestureEvent begin;
     Stamp last;
-    bool cancelled = false;
+    EventPhase how = EventPhase::begin;  ///< the last one's
+    CancelReason reason = CancelReason::none;
+
+    [[nodiscard]] bool cancelled() const noexcept { return how == EventPhase::cancel; }
+    [[nodiscard]] bool closed() const noexcept { return cancelled() || how == EventPhase::end; }
 };
 
 std::vector<Life> lives_of(std::span<const GestureEvent> events) {
@@ -67,7 +71,7 @@ std::vector<Life> lives_of(std::span<const GestureEvent> events) {
             continue;
         }
         if (e.phase == EventPhase::begin) {
-            lives.push_back({e, e.sensor, false});
+            lives.push_back({e, e.sensor});
             continue;
         }
         const auto life = std::find_if(lives.rbegin(), lives.rend(), [&](const Life& l) {
@@ -75,7 +79,8 @@ std::vector<Life> lives_of(std::span<const GestureEvent> events) {
         });
         if (life != lives.rend()) {
             life->last = e.sensor;
-            life->cancelled = life->cancelled || e.phase == EventPhase::cancel;
+            life->how = life->cancelled() ? EventPhase::cancel : e.phase;
+            life->reason = e.cancel_reason;
         }
     }
     return lives;
@@ -148,6 +153,7 @@ const char* to_string(Verdict v) noexcept {
         case Verdict::wrong_hand: return "wrong hand";
         case Verdict::overlap: return "overlap";
         case Verdict::stray: return "stray";
+        case Verdict::cancelled: return "cancelled";
     }
     return "unknown";
 }
@@ -166,9 +172,12 @@ void GestureScore::add(const GestureScore& o) {
     stray += o.stray;
     cancelled += o.cancelled;
     cancelled_in_label += o.cancelled_in_label;
+    without_reason += o.without_reason;
+    unclosed += o.unclosed;
     from_start_ms.insert(from_start_ms.end(), o.from_start_ms.begin(), o.from_start_ms.end());
     from_onset_ms.insert(from_onset_ms.end(), o.from_onset_ms.begin(), o.from_onset_ms.end());
     from_end_ms.insert(from_end_ms.end(), o.from_end_ms.begin(), o.from_end_ms.end());
+    from_commit_ms.insert(from_commit_ms.end(), o.from_commit_ms.begin(), o.from_commit_ms.end());
 }
 
 GestureScorer::GestureScorer(const GestureSettings& settings) : settings_(settings) {}
@@ -197,15 +206,17 @@ std::vector<JudgedEvent> GestureScorer::add(std::span<const GestureEvent> events
     }
     for (const Life& life : lives) {
         const GestureEvent& e = life.begin;
-        if (life.cancelled) {
-            continue;  // counted below, when it is known what was matched
-        }
-        JudgedEvent verdict;
+        JudgedEvent& verdict = judged.emplace_back();
         verdict.event = e;
+        verdict.last = life.last;
         for (const GestureLabel& label : labels) {
             if (inside(label, e.sensor)) {
                 verdict.during = label.gesture;
             }
+        }
+        if (life.cancelled()) {
+            verdict.verdict = Verdict::cancelled;
+            continue;  // counted below, when it is known what was matched
         }
         const auto hit = find(labels, matched, [&](const GestureLabel& l) {
             return scored(l.gesture) && same_gesture(l, e) && same_hand(l, e) &&
@@ -213,6 +224,7 @@ std::vector<JudgedEvent> GestureScorer::add(std::span<const GestureEvent> events
         });
         // A label without a direction is a row of its own, in which its finds are counted.
         GestureScore& score = gestures_[hit ? labels[*hit].gesture : name_of(e)];
+        score.unclosed += life.closed() ? 0 : 1;
         const auto ok_sign = find(labels, matched, [&](const GestureLabel& l) {
             return l.gesture == kOkSign && e.type == GestureType::pinch && same_hand(l, e) &&
                    inside(l, e.sensor);
@@ -228,14 +240,19 @@ std::vector<JudgedEvent> GestureScorer::add(std::span<const GestureEvent> events
         });
         if (hit) {
             matched[*hit] = true;
+            verdict.label = hit;
             verdict.verdict = Verdict::correct;
             ++score.correct;
             const GestureLabel& label = labels[*hit];
             score.from_start_ms.push_back(to_seconds(e.sensor - label.start) * 1e3);
             score.from_onset_ms.push_back(to_seconds(e.sensor - e.onset) * 1e3);
             score.from_end_ms.push_back(to_seconds(e.sensor - label.end) * 1e3);
+            if (label.commit) {
+                score.from_commit_ms.push_back(to_seconds(e.sensor - *label.commit) * 1e3);
+            }
         } else if (ok_sign) {
             matched[*ok_sign] = true;
+            verdict.label = ok_sign;
             verdict.verdict = Verdict::allowed;
             ++score.allowed;
         } else if (other_hand) {
@@ -248,24 +265,35 @@ std::vector<JudgedEvent> GestureScorer::add(std::span<const GestureEvent> events
             verdict.verdict = Verdict::stray;
             ++score.stray;
         }
-        judged.push_back(std::move(verdict));
     }
     for (const Life& life : lives) {
-        if (!life.cancelled) {
+        if (!life.cancelled()) {
             continue;
         }
         GestureScore& score = gestures_[name_of(life.begin)];
         ++score.cancelled;
+        score.without_reason += life.reason == CancelReason::none ? 1 : 0;
         const auto lost = find(labels, matched, [&](const GestureLabel& l) {
             return same_gesture(l, life.begin) && inside(l, life.begin.sensor);
         });
         score.cancelled_in_label += lost ? 1 : 0;
     }
     if (labels.empty()) {
-        unlabelled_events_ += static_cast<int>(judged.size());
+        unlabelled_events_ +=
+            static_cast<int>(std::count_if(judged.begin(), judged.end(), [](const JudgedEvent& e) {
+                return e.verdict != Verdict::cancelled;
+            }));
         unlabelled_hours_ += to_seconds(length) / kSecondsAnHour;
     }
     return judged;
+}
+
+void GestureScorer::add(const GestureScorer& other) {
+    for (const auto& [name, score] : other.gestures_) {
+        gestures_[name].add(score);
+    }
+    unlabelled_events_ += other.unlabelled_events_;
+    unlabelled_hours_ += other.unlabelled_hours_;
 }
 
 GestureScore GestureScorer::all() const {

@@ -253,9 +253,62 @@ std::optional<double> value_of(const GestureField& field, std::string_view text)
 
 }  // namespace
 
+namespace {
+
+std::array<GestureType, kGestureTypeCount> all_types() {
+    std::array<GestureType, kGestureTypeCount> types{};
+    for (std::size_t t = 0; t < types.size(); ++t) {
+        types[t] = static_cast<GestureType>(t);
+    }
+    return types;
+}
+
 // A gesture needs less than all of the hand: measured, those that are made at twice the speed at
 // which the whole hand is seen are still found.
 constexpr double kShareOfSpeed = 0.5;
+
+}  // namespace
+
+bool needs_millimetres(GestureType type) noexcept {
+    switch (type) {
+        case GestureType::pinch:
+        case GestureType::double_pinch:
+        case GestureType::tap:
+        case GestureType::double_tap:
+        case GestureType::press:
+        case GestureType::touch:
+        case GestureType::drag:
+        case GestureType::two_hand_zoom:
+        case GestureType::two_hand_rotate: return true;
+        case GestureType::hand:
+        case GestureType::engage:
+        case GestureType::swipe:
+        case GestureType::push:
+        case GestureType::pull:
+        case GestureType::grab:
+        case GestureType::circle:
+        case GestureType::wave:
+        case GestureType::raise:
+        case GestureType::dwell:
+        case GestureType::open_palm:
+        case GestureType::fist:
+        case GestureType::point:
+        case GestureType::victory:
+        case GestureType::thumb_up:
+        case GestureType::thumb_down: break;
+    }
+    return false;
+}
+
+GestureSettings without_millimetres(const GestureSettings& settings) {
+    GestureSettings left = settings;
+    for (const GestureType type : all_types()) {
+        if (needs_millimetres(type)) {
+            (void)set_field(left, to_string(type), "off");
+        }
+    }
+    return left;
+}
 
 GestureDemands demands_of(const GestureSettings& settings) noexcept {
     GestureDemands demands;
@@ -268,7 +321,6 @@ GestureDemands demands_of(const GestureSettings& settings) noexcept {
     if (settings.pinch) {
         // It begins at rest, and is an aperture of so many mm.
         demands.hand_mmps = std::max(demands.hand_mmps, settings.pinch_palm_mmps);
-        demands.metric = true;
     }
     if (settings.wave) {
         // The fastest of a stroke that is a sine, as slow as strokes may follow each other.
@@ -278,6 +330,9 @@ GestureDemands demands_of(const GestureSettings& settings) noexcept {
                                             (1e-3 * settings.wave_within_ms));
     }
     demands.hand_mmps *= kShareOfSpeed;
+    demands.metric = std::ranges::any_of(all_types(), [&](GestureType type) {
+        return needs_millimetres(type) && is_wanted(settings, type);
+    });
     return demands;
 }
 

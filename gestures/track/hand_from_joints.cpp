@@ -153,6 +153,7 @@ bool complete_from_joints(Hand& hand) noexcept {
         hand.confidence = 0.0F;  // nothing can be said of where it is
         return false;
     }
+    hand.articulated = true;
     hand.palm_normal = palm_facing(hand);
     // A wrist bends, yet nothing else says where the elbow is.
     hand.forearm = Vec3f::Zero();

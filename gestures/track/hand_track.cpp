@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gestures/track/hand_joints.hpp"
+
 namespace xtrack::track {
 
 namespace {
@@ -151,6 +153,7 @@ void HandTrack::update(Stamp stamp, const HandRegion& region, const Vec3f& norma
     finger_tracks_.update(stamp, region, side, fingers);
     fill_fingers(region, fingers, hand);
     fill_pinch(hand);
+    infer_joints(region, side, hand);
 }
 
 void HandTrack::fill_fingers(const HandRegion& region, const FingerReading& fingers, Hand& hand) {

@@ -16,9 +16,7 @@ namespace xtrack {
 namespace {
 
 constexpr std::size_t kMaxFileBytes = std::size_t{256} << 20U;
-// An hour at 60 frames a second: a frame takes over a kilobyte, with a hand in it or not.
-constexpr std::size_t kMaxFrames = 250'000;
-constexpr base::CsvLimits kLimits{8192, kMaxHands* kMaxFrames, 256};
+constexpr base::CsvLimits kLimits{8192, kMaxHands* kMaxJointMoments, 256};
 constexpr double kMaxPosition_mm = 1e5;
 
 struct Columns {
@@ -151,8 +149,8 @@ Result<std::vector<HandFrame>> parse_joint_recording(std::string_view text,
     }
     std::vector<HandFrame> frames;
     // Doubling would take twice the memory of a long recording.
-    frames.reserve(
-        std::min(kMaxFrames, static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'))));
+    frames.reserve(std::min(kMaxJointMoments,
+                            static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'))));
     while (true) {
         const auto more = csv->next();
         if (!more) {
@@ -168,8 +166,8 @@ Result<std::vector<HandFrame>> parse_joint_recording(std::string_view text,
             return stamp.error();
         }
         if (frames.empty() || *stamp != frames.back().stamp) {
-            if (frames.size() == kMaxFrames) {
-                return csv->error("comes after " + std::to_string(kMaxFrames) +
+            if (frames.size() == kMaxJointMoments) {
+                return csv->error("comes after " + std::to_string(kMaxJointMoments) +
                                   " frames; split the recording");
             }
             HandFrame frame;
@@ -206,33 +204,43 @@ void append(std::string& text, float value, int digits) {
 
 }  // namespace
 
-std::string joint_recording_text(std::span<const HandFrame> frames) {
+std::string joint_recording_head() {
     std::string text = "t_us,hand,hand_id,confidence";
     for (std::size_t j = 0; j < kJointCount; ++j) {
         for (const char axis : {'x', 'y', 'z'}) {
             text += std::string(",") + to_string(static_cast<Joint>(j)) + "_" + axis;
         }
     }
-    text += '\n';
-    for (const HandFrame& frame : frames) {
-        const std::string t = std::to_string(frame.stamp.us());
-        if (frame.count == 0) {
-            text += t + ",,," + std::string(3 * kJointCount, ',') + "\n";
-        }
-        for (const Hand& hand : frame.all()) {
-            text += t + "," + to_string(hand.chirality) + "," + std::to_string(hand.id);
-            append(text, hand.confidence, 3);
-            for (const TrackedPoint& joint : hand.joints) {
-                if (!joint.valid) {
-                    text += ",,,";
-                    continue;
-                }
-                for (Eigen::Index axis = 0; axis < 3; ++axis) {
-                    append(text, joint.position_mm[axis], 2);
-                }
+    return text + '\n';
+}
+
+std::string joint_recording_lines(const HandFrame& frame) {
+    const std::string t = std::to_string(frame.stamp.us());
+    if (frame.count == 0) {
+        return t + ",,," + std::string(3 * kJointCount, ',') + "\n";
+    }
+    std::string text;
+    for (const Hand& hand : frame.all()) {
+        text += t + "," + to_string(hand.chirality) + "," + std::to_string(hand.id);
+        append(text, hand.confidence, 3);
+        for (const TrackedPoint& joint : hand.joints) {
+            if (!joint.valid) {
+                text += ",,,";
+                continue;
             }
-            text += '\n';
+            for (Eigen::Index axis = 0; axis < 3; ++axis) {
+                append(text, joint.position_mm[axis], 2);
+            }
         }
+        text += '\n';
+    }
+    return text;
+}
+
+std::string joint_recording_text(std::span<const HandFrame> frames) {
+    std::string text = joint_recording_head();
+    for (const HandFrame& frame : frames) {
+        text += joint_recording_lines(frame);
     }
     return text;
 }

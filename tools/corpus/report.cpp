@@ -22,13 +22,13 @@ std::string text(const std::vector<double>& ms) {
                       : fmt::format("{:.0f} / {:.0f}", percentile(ms, 0.5), percentile(ms, 0.95));
 }
 
-std::string row(const std::string& name, const GestureScore& s, const std::vector<double>& delay) {
+std::string row(const std::string& name, const GestureScore& s) {
     const bool asked = s.labelled > 0;
     return fmt::format("  {:<24} {:>5}/{:<5} {:>22} {:>5} {:>22} {:>5} {:>13} {:>5} {:>5}\n", name,
                        s.correct, s.labelled, asked ? text(s.detection()) : "-", s.false_events(),
                        asked ? text(s.false_per_label()) : "-",
-                       asked ? fmt::format("{:.2f}", s.jaccard()) : "-", text(delay), s.wrong_hand,
-                       s.cancelled);
+                       asked ? fmt::format("{:.2f}", s.jaccard()) : "-", text(s.from_commit_ms),
+                       s.wrong_hand, s.cancelled);
 }
 
 std::string table(const Group& group) {
@@ -36,11 +36,9 @@ std::string table(const Group& group) {
                                   group.name, "found", "DR [95 %]", "false", "FP/label [95 %]",
                                   "JI", "commit, ms", "wrong", "canc");
     for (const auto& [name, score] : group.tally.scores) {
-        const auto delay = group.tally.delay_ms.find(name);
-        out += row("  " + name, score,
-                   delay == group.tally.delay_ms.end() ? std::vector<double>{} : delay->second);
+        out += row("  " + name, score);
     }
-    out += row("  all", group.tally.all(), group.tally.all_delays());
+    out += row("  all", group.tally.all());
     if (group.tally.short_of_definition > 0) {
         out += fmt::format("    {} performed short of their definition, not asked for\n",
                            group.tally.short_of_definition);
@@ -133,7 +131,7 @@ ordered_json json_of(const std::vector<double>& ms) {
     return {{"p50", percentile(ms, 0.5)}, {"p95", percentile(ms, 0.95)}};
 }
 
-ordered_json json_of(const GestureScore& s, const std::vector<double>& delay) {
+ordered_json json_of(const GestureScore& s) {
     return {{"labelled", s.labelled},
             {"found", s.correct},
             {"detection_rate", json_of(s.detection())},
@@ -142,7 +140,7 @@ ordered_json json_of(const GestureScore& s, const std::vector<double>& delay) {
             {"jaccard", s.labelled > 0 ? ordered_json(s.jaccard()) : ordered_json(nullptr)},
             {"wrong_hand", s.wrong_hand},
             {"cancelled", s.cancelled},
-            {"after_commit_ms", json_of(delay)}};
+            {"after_commit_ms", json_of(s.from_commit_ms)}};
 }
 
 }  // namespace
@@ -197,11 +195,9 @@ ordered_json json_of(const std::vector<Group>& groups) {
                             {"short_of_definition", t.short_of_definition}};
         one["gestures"] = ordered_json::object();
         for (const auto& [name, score] : t.scores) {
-            const auto delay = t.delay_ms.find(name);
-            one["gestures"][name] =
-                json_of(score, delay == t.delay_ms.end() ? std::vector<double>{} : delay->second);
+            one["gestures"][name] = json_of(score);
         }
-        one["all"] = json_of(t.all(), t.all_delays());
+        one["all"] = json_of(t.all());
         one["causes"] = ordered_json::array();
         for (const auto& [name, cause] : causes_of(t)) {
             one["causes"].push_back(

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 #include <xtrack/gesture_recogniser.hpp>
 
-#include "tools/commit_delay.hpp"
 #include "tools/corpus/definitions.hpp"
 #include "tools/corpus/tracked.hpp"
 
@@ -81,10 +80,6 @@ void Tally::add(const Tally& other) {
     for (const auto& [name, score] : other.scores) {
         scores[name].add(score);
     }
-    for (const auto& [name, delays] : other.delay_ms) {
-        auto& mine = delay_ms[name];
-        mine.insert(mine.end(), delays.begin(), delays.end());
-    }
     findings.insert(findings.end(), other.findings.begin(), other.findings.end());
     hours += other.hours;
     sequences += other.sequences;
@@ -103,14 +98,6 @@ GestureScore Tally::all() const {
     return sum;
 }
 
-std::vector<double> Tally::all_delays() const {
-    std::vector<double> all;
-    for (const auto& [name, delays] : delay_ms) {
-        all.insert(all.end(), delays.begin(), delays.end());
-    }
-    return all;
-}
-
 Tally tally_of(const Sequence& sequence, std::map<std::string, GestureScore> scores,
                std::span<const JudgedEvent> judged, const HandOf& hand_of,
                std::span<const Refusal> refusals) {
@@ -125,9 +112,6 @@ Tally tally_of(const Sequence& sequence, std::map<std::string, GestureScore> sco
             tally.findings.push_back(finding_of(sequence, event.event, hand_of(event.event),
                                                 event.verdict == Verdict::wrong_hand));
         }
-    }
-    for (const CommitDelay& delay : delays_after_commit(judged, sequence.labels)) {
-        tally.delay_ms[delay.gesture].push_back(delay.ms);
     }
     for (const GestureLabel& label : sequence.labels) {
         const bool found = std::any_of(judged.begin(), judged.end(), [&](const JudgedEvent& e) {

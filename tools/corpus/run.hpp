@@ -32,7 +32,6 @@ struct Finding {
 /// All that sequences gave, added up.
 struct Tally {
     std::map<std::string, GestureScore> scores;
-    std::map<std::string, std::vector<double>> delay_ms;  ///< from the label's commit
     std::vector<Finding> findings;
     double hours = 0.0;
     int sequences = 0;
@@ -44,7 +43,6 @@ struct Tally {
 
     void add(const Tally& other);
     [[nodiscard]] GestureScore all() const;
-    [[nodiscard]] std::vector<double> all_delays() const;
 };
 
 /// What a machine said no to.

@@ -40,6 +40,9 @@ struct RecordingEntry {
     Stamp stamp;
     std::uint64_t sequence = 0;
     int pattern = kUnknownPattern;
+    /// Frame's, where some rows saw another pattern; the end is 0 where nobody says: all are clean.
+    int clean_row_begin = 0;
+    int clean_row_end = 0;
 };
 
 /// A folder of images with their stamps: the format that docs/recordings.md describes. open()
@@ -122,7 +125,8 @@ class RecordingReader {
 [[nodiscard]] Result<std::unique_ptr<DepthSource>> depth_source(const RecordingReader& recording);
 
 /// Writes a recording. Everything goes into a temporary folder beside the target, which gets its
-/// name at close(): a recording is there whole or not at all. Without a close() nothing remains.
+/// name at close(): a recording is there whole or not at all. Without a close() nothing remains,
+/// unless the program is killed: then what was added so far can be read in folder().
 /// Images are PNG, so that what is read back is bit for bit what was written.
 /// @thread one at a time
 /// @since 0.1
@@ -144,7 +148,8 @@ class RecordingWriter {
     ~RecordingWriter();
 
     /// Adds an image of fringes. Stamps must not decrease, sizes must not change. The format has no
-    /// place for `status` and the clean rows: read back, a frame is `ok` and all of its rows clean.
+    /// place for `status`: read back, a frame is `ok`. One without any clean row, as a frame is
+    /// made, is read back as one that is clean all over.
     [[nodiscard]] Result<void> add(const Frame& frame);
     /// Adds a depth image, in the unit of the setup.
     [[nodiscard]] Result<void> add(const DepthFrame& depth);
@@ -155,7 +160,10 @@ class RecordingWriter {
     /// Adds a text file such as `labels.csv` or `truth/hands.csv`; the name stays inside.
     [[nodiscard]] Result<void> add_text(const std::string& name, const std::string& text);
 
-    /// Writes what is left and gives the folder its name. After this only destruction is legal.
+    /// Where it is until close().
+    [[nodiscard]] const std::filesystem::path& folder() const noexcept;
+
+    /// Gives the folder its name. After this only destruction is legal.
     /// @return an Error: no frame was added, no frame of fringes names its pattern, a stamp or a
     ///         sequence is beyond what the format holds, or the disk refuses; nothing remains then
     [[nodiscard]] Result<void> close();

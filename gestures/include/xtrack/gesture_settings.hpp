@@ -17,13 +17,13 @@ struct GestureSettings {
     // --- what is recognised ----------------------------------------------------------------------
     bool swipe = true;
     bool push = true;
-    bool pull = false;
+    bool pull = true;
     bool pinch = true;
     bool double_pinch = false;
-    bool grab = false;
-    bool tap = false;
+    bool grab = true;
+    bool tap = true;
     bool double_tap = false;
-    bool circle = false;
+    bool circle = true;
     bool wave = false;  ///< off: who beckons or gesticulates waves too
     bool raise = false;
     bool dwell = false;
@@ -342,6 +342,17 @@ struct GestureDemands {
 /// @thread any
 /// @since 0.1
 [[nodiscard]] bool is_wanted(const GestureSettings& settings, GestureType type) noexcept;
+
+/// Whether a gesture compares what is smaller than a hand, or is a distance that is asked for in
+/// mm: relative depth, whose lengths are nominal, does not carry it.
+/// @thread any
+/// @since 0.1
+[[nodiscard]] bool needs_millimetres(GestureType type) noexcept;
+
+/// The same settings without those gestures.
+/// @thread any
+/// @since 0.1
+[[nodiscard]] GestureSettings without_millimetres(const GestureSettings& settings);
 
 /// One field of GestureSettings, for programs that list, set and sweep them by name. A switch takes
 /// 0 and 1.

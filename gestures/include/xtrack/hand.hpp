@@ -87,7 +87,11 @@ struct Hand {
     float pinch_value = 0.0F;         ///< 0 open (60 mm) .. 1 closed (15 mm); 0 when not known
     float grab_value = 0.0F;          ///< 0 open .. 1 fist
 
-    std::array<TrackedPoint, kJointCount> joints{};  ///< valid where a tracker knows them
+    /// Valid where they are known. Joints lie inside the hand; fingertips and palm_mm at its skin.
+    std::array<TrackedPoint, kJointCount> joints{};
+    /// A tracker of joints has measured each joint by itself. False: they follow from what depth
+    /// shows and from the proportions of hands; a finger's are valid only where it is straight.
+    bool articulated = false;
 
     [[nodiscard]] const TrackedPoint& joint(Joint j) const noexcept {
         return joints[static_cast<std::size_t>(j)];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -12,6 +13,11 @@
 
 namespace xtrack {
 
+/// Moments that a joints.csv may hold: an hour at 60 a second, where a moment takes over a
+/// kilobyte.
+/// @since 0.1
+inline constexpr std::size_t kMaxJointMoments = 250'000;
+
 /// Reads joints.csv: one line a hand and moment, lines of equal `t_us` are one HandFrame, and an
 /// empty `hand` is a moment without one (its other fields are not read). Each Hand carries id,
 /// chirality, confidence (also the chirality's) and the joints that are there; nothing else is
@@ -20,7 +26,7 @@ namespace xtrack {
 /// @return an Error that names the line and field: NaN, infinity or over 100 m, time that goes
 ///         backwards, more than kMaxHands hands or one hand_id twice in a moment (refused, not cut:
 ///         a reader that chose two would hide a broken tracker), a missing column, a row of fewer
-///         fields than the header has, no line at all, over 250 000 moments, a file over 256 MiB
+///         fields than the header has, no line at all, over kMaxJointMoments, a file over 256 MiB
 /// @thread any
 /// @since 0.1
 [[nodiscard]] Result<std::vector<HandFrame>> read_joint_recording(
@@ -34,6 +40,11 @@ namespace xtrack {
 /// The text that parse_joint_recording() reads back, to 0.01 mm.
 /// @since 0.1
 [[nodiscard]] std::string joint_recording_text(std::span<const HandFrame> frames);
+
+/// That text in pieces, for what grows while it is recorded: the first line, and those of a moment.
+/// @since 0.1
+[[nodiscard]] std::string joint_recording_head();
+[[nodiscard]] std::string joint_recording_lines(const HandFrame& frame);
 
 /// Writes joints.csv, whole or not at all; an existing file is replaced.
 /// @return an Error: a position is not finite, stamps decrease, the disk refuses

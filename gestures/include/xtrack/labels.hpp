@@ -73,6 +73,11 @@ struct HandTruth {
 [[nodiscard]] Result<std::vector<HandTruth>> parse_hand_truth(std::string_view text,
                                                               const std::string& name);
 
+/// What a label is of, its times left open. @param hand left, right or unknown
+/// @errors invalid_argument: one of them is not known, and what there is
+/// @since 0.1
+[[nodiscard]] Result<GestureLabel> label_of(std::string_view gesture, std::string_view hand);
+
 // The texts that the parse functions read back (positions to 0.01 mm).
 
 /// @since 0.1

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -42,7 +44,14 @@ enum class Verdict {
     wrong_hand,  ///< correct but for the hand; counts as false
     overlap,     ///< false, and overlaps a label of its gesture (twice, too early, too late)
     stray,       ///< false
+    cancelled,   ///< begun and cancelled: neither right nor false
 };
+
+/// Whether it counts against the recogniser. @thread any
+/// @since 0.1
+[[nodiscard]] constexpr bool is_false(Verdict v) noexcept {
+    return v == Verdict::wrong_hand || v == Verdict::overlap || v == Verdict::stray;
+}
 
 /// As eval prints it. Static storage. @thread any
 /// @since 0.1
@@ -52,8 +61,10 @@ enum class Verdict {
 /// @since 0.1
 struct JudgedEvent {
     GestureEvent event;  ///< its begin
+    Stamp last;          ///< of its newest event: where it ended or was cancelled
     Verdict verdict = Verdict::stray;
-    std::string during;  ///< label that it fell into; empty = between labels
+    std::string during;                ///< label that it fell into; empty = between labels
+    std::optional<std::size_t> label;  ///< the one that it matched (correct, allowed), by index
 };
 
 /// Figures of one gesture (or of all) over some streams.
@@ -67,9 +78,13 @@ struct GestureScore {
     int stray = 0;
     int cancelled = 0;           ///< begun and cancelled: no event
     int cancelled_in_label = 0;  ///< of these, while the same gesture was labelled and not matched
+    int without_reason = 0;      ///< of these, without a CancelReason: a bug of the recogniser's
+    int unclosed = 0;            ///< begun, with neither end nor cancel: another one
     std::vector<double> from_start_ms;  ///< label's start to deciding frame
     std::vector<double> from_onset_ms;  ///< the event's own onset to deciding frame
     std::vector<double> from_end_ms;    ///< label's end to deciding frame; negative: before it
+    /// GestureLabel::commit to deciding frame, of labels that have it.
+    std::vector<double> from_commit_ms;
 
     /// Events that match nothing, partial overlaps counted (as SHREC'22 publishes) ...
     [[nodiscard]] int false_events() const noexcept { return wrong_hand + overlapping + stray; }
@@ -87,6 +102,10 @@ struct GestureScore {
     [[nodiscard]] double jaccard() const noexcept;
     [[nodiscard]] Estimate wrong_hands() const noexcept {
         return wilson(wrong_hand, correct + wrong_hand);
+    }
+    /// Share of cancels that took back what nobody had asked for; the others lost a gesture.
+    [[nodiscard]] Estimate right_cancels() const noexcept {
+        return wilson(cancelled - cancelled_in_label, cancelled);
     }
     void add(const GestureScore& other);
 };
@@ -106,9 +125,14 @@ class GestureScorer {
 
     /// @param events all events of one stream, in order, finish() included
     /// @param length of the stream; only of streams without labels does it matter
-    /// @return every gesture with its verdict, in order
+    /// @return every gesture with its verdict, in the order of their beginnings
     std::vector<JudgedEvent> add(std::span<const GestureEvent> events,
                                  std::span<const GestureLabel> labels, Duration length);
+    /// Adds what another scorer found in other streams.
+    void add(const GestureScorer& other);
+
+    /// Whether labels of this name ask for an event.
+    [[nodiscard]] bool scored(std::string_view name) const;
 
     /// By name (`swipe_left`, `pinch`): what was labelled or recognised.
     [[nodiscard]] const std::map<std::string, GestureScore>& gestures() const noexcept {
@@ -123,8 +147,6 @@ class GestureScorer {
     }
 
  private:
-    [[nodiscard]] bool scored(std::string_view name) const;
-
     GestureSettings settings_;
     std::map<std::string, GestureScore> gestures_;
     int unlabelled_events_ = 0;

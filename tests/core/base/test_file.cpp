@@ -81,6 +81,20 @@ TEST_F(FileTest, NewFolderAppearsAtCommit) {
     EXPECT_EQ(entries(), 1U);
 }
 
+TEST_F(FileTest, NewFolderAddsToAFile) {
+    auto made = NewFolder::create(folder_ / "out");
+    ASSERT_TRUE(made.ok());
+    ASSERT_TRUE(made->append("list.csv", "a\n").ok());
+    ASSERT_TRUE(made->append("list.csv", "b\n").ok());
+    EXPECT_EQ(*read_file(made->path() / "list.csv", 9), "a\nb\n");
+    const auto refused = made->append("missing/list.csv", "c\n");
+    ASSERT_FALSE(refused.ok());
+    EXPECT_THAT(refused.error().message, HasSubstr("out/missing/list.csv: cannot be written"));
+    EXPECT_FALSE(made->append("../list.csv", "c\n").ok());
+    ASSERT_TRUE(made->commit().ok());
+    EXPECT_EQ(*read_file(folder_ / "out" / "list.csv", 9), "a\nb\n");
+}
+
 TEST_F(FileTest, NewFolderWritesNothingOutside) {
     std::ofstream(folder_ / "precious.txt") << "mine";
     auto made = NewFolder::create(folder_ / "out");

@@ -175,6 +175,22 @@ TEST_F(RoundTrip, WriterLeavesNothingUnlessItIsClosed) {
     EXPECT_TRUE(fs::is_empty(folder_));
 }
 
+// As a program that is killed leaves it.
+TEST_F(RoundTrip, WhatIsNotClosedYetCanBeReadWhereItIs) {
+    const auto patterns = three_step_sequence(Axis::x, {64, 48}, 16.0);
+    auto writer = RecordingWriter::create(folder_ / "rec", {{}, patterns});
+    ASSERT_TRUE(writer.ok()) << writer.error().message;
+    for (int i = 0; i < 2; ++i) {
+        ASSERT_TRUE(writer->add(small_frame(i, i)).ok());
+        const auto reader = RecordingReader::open(writer->folder());
+        ASSERT_TRUE(reader.ok()) << reader.error().message;
+        EXPECT_EQ(reader->entries().size(), static_cast<std::size_t>(i + 1));
+    }
+    EXPECT_FALSE(fs::exists(folder_ / "rec"));
+    ASSERT_TRUE(writer->close().ok());
+    EXPECT_EQ(RecordingReader::open(folder_ / "rec")->entries().size(), 2U);
+}
+
 TEST_F(RoundTrip, WriterRefusesWhatWouldNotReadBack) {
     const auto patterns = three_step_sequence(Axis::x, {1024, 768}, 16.0);
     fs::create_directories(folder_ / "taken" / "by others");

@@ -153,12 +153,57 @@ TEST(Scorer, CancelledOnesAreNone) {
     Script script;
     script.pinch(1.5, 1.8, EventPhase::cancel);
     script.pinch(4.0, 4.5, EventPhase::cancel);
+    script.events.back().cancel_reason = CancelReason::lost;
     GestureScorer scorer;
-    EXPECT_TRUE(scorer.add(script.events, std::vector{label("pinch", 1.0, 2.0)}, kLength).empty());
+    const auto judged = scorer.add(script.events, std::vector{label("pinch", 1.0, 2.0)}, kLength);
+    ASSERT_EQ(judged.size(), 2U);
+    EXPECT_EQ(judged[0].verdict, Verdict::cancelled);
+    EXPECT_FALSE(is_false(judged[0].verdict));
+    EXPECT_EQ(judged[0].last.us(), 1'800'000);
+    EXPECT_EQ(judged[1].verdict, Verdict::cancelled);
     EXPECT_EQ(scorer.all().correct, 0);
     EXPECT_EQ(scorer.all().false_events(), 0);
     EXPECT_EQ(scorer.all().cancelled, 2);
     EXPECT_EQ(scorer.all().cancelled_in_label, 1);
+    EXPECT_DOUBLE_EQ(scorer.all().right_cancels().value, 0.5);
+    EXPECT_EQ(scorer.all().without_reason, 1);
+    EXPECT_EQ(scorer.all().unclosed, 0);
+}
+
+TEST(Scorer, ACancelledOneOfAStreamWithoutLabelsIsNoEvent) {
+    Script script;
+    script.pinch(1.5, 1.8, EventPhase::cancel);
+    script.pinch(4.0, 4.5);
+    GestureScorer scorer;
+    scorer.add(script.events, {}, std::chrono::hours{1});
+    EXPECT_EQ(scorer.unlabelled_events(), 1);
+}
+
+TEST(Scorer, WhatIsNeverClosedIsCounted) {
+    Script script;
+    script.pinch(1.5, 1.8, EventPhase::update);
+    GestureScorer scorer;
+    const auto judged = scorer.add(script.events, std::vector{label("pinch", 1, 2)}, kLength);
+    EXPECT_EQ(scorer.all().unclosed, 1);
+    EXPECT_EQ(judged.at(0).label, 0U);
+}
+
+TEST(Scorer, AddsWhatAnotherFound) {
+    Script script;
+    script.swipe_left(1.5);
+    GestureScorer first, second, third;
+    first.add(script.events, std::vector{label("swipe_left", 1, 2)}, kLength);
+    second.add(script.events, std::vector{label("x_one", 1, 2)}, kLength);
+    third.add(script.events, {}, std::chrono::hours{2});
+    GestureScorer sum;
+    for (const GestureScorer& one : {first, second, third}) {
+        sum.add(one);
+    }
+    EXPECT_EQ(sum.all().labelled, 1);
+    EXPECT_EQ(sum.all().correct, 1);
+    EXPECT_EQ(sum.all().stray, 2);
+    EXPECT_EQ(sum.unlabelled_events(), 1);
+    EXPECT_DOUBLE_EQ(sum.false_per_hour().value, 0.5);
 }
 
 TEST(Scorer, TheWrongHandIsCounted) {
@@ -178,8 +223,11 @@ TEST(Scorer, MeasuresLatency) {
     Script script;
     script.swipe_left(1.4);
     GestureScorer scorer;
-    scorer.add(script.events, std::vector{label("swipe_left", 1.0, 2.0)}, kLength);
+    GestureLabel told = label("swipe_left", 1.0, 2.0);
+    told.commit = Stamp::from_us(1'350'000);
+    scorer.add(script.events, std::vector{told}, kLength);
     const GestureScore s = scorer.all();
+    EXPECT_DOUBLE_EQ(s.from_commit_ms.at(0), 50.0);
     EXPECT_DOUBLE_EQ(s.from_start_ms.at(0), 400.0);
     EXPECT_DOUBLE_EQ(s.from_onset_ms.at(0), 150.0);
     EXPECT_DOUBLE_EQ(s.from_end_ms.at(0), -600.0);
