@@ -252,6 +252,12 @@ bool fulfilled_before(const Movement& m, const std::string& gesture, double t_s)
             return stroke(m, way.along, t_s - kBeforeS, t_s).has_value();
         }
     }
+    if (gesture == "pinch") {
+        return pinch(m, t_s - kBeforeS, t_s).has_value();
+    }
+    if (gesture == "grab") {
+        return grab(m, t_s - kBeforeS, t_s).has_value();
+    }
     const bool push = gesture == "push";
     return (push || gesture == "pull") &&
            thrust(m, {0.0F, 0.0F, push ? -1.0F : 1.0F}, t_s - kBeforeS, t_s).has_value();

@@ -45,8 +45,8 @@ using Moment = std::optional<double>;
 /// The line between them turns by 10 degrees.
 [[nodiscard]] Moment rotate(const Movement& a, const Movement& b, double start_s, double end_s);
 
-/// Whether the half second before `t_s` fulfils the plain definition of a swipe, push or pull of
-/// that name; of other names nothing is said.
+/// Whether the half second before `t_s` fulfils the plain definition of a swipe, push, pull, pinch
+/// or grab; of other names nothing is said.
 [[nodiscard]] bool fulfilled_before(const Movement& m, const std::string& gesture, double t_s);
 
 }  // namespace xtrack::tools::corpus::definitions

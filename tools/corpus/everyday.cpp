@@ -269,10 +269,13 @@ void talk(Movement& m, double seconds) {
         // Beats: a stroke on the word and back, mostly down and outward, short; now and then a
         // wide one, askew, as arms swing about their elbows.
         m.begin("talking, beats");
-        const int beats = 1 + static_cast<int>(m.random().bits() % 5);
         const bool wide = m.random().unit() < 0.12;
         const double length = wide ? m.draw(100.0, 170.0) : m.draw(25.0, 85.0);
         const double angle = wide ? m.draw(0.70, 0.95) : m.draw(0.0, 1.6);
+        // To and fro as far as this, and again, would be a wave.
+        constexpr double kWaveMm = 45.0;
+        const int most = length * std::cos(angle) > kWaveMm ? 1 : 5;
+        const int beats = 1 + static_cast<int>(m.random().bits() % 5) % most;
         const Vec3f way =
             static_cast<float>(length) * Vec3f(out(m) * static_cast<float>(std::cos(angle)),
                                                static_cast<float>(std::sin(angle)),

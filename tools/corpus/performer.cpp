@@ -93,7 +93,7 @@ void Performer::leave() {
 void Performer::rest() {
     m_.begin("between");
     m_.turn(Vec3f::Zero(), 0.4);
-    m_.shape(loose(static_cast<float>(m_.draw(0.0, 0.4))), 0.4);
+    m_.shape(loose(static_cast<float>(poses_ ? m_.draw(0.8, 1.0) : m_.draw(0.0, 0.4))), 0.4);
     go_slowly(near_home(15.0));
     m_.wait(m_.draw(0.3, 1.2));
 }
@@ -129,6 +129,7 @@ void Performer::go_back(double stroke) {
 }
 
 void Performer::perform(const std::string& name) {
+    poses_ = false;
     if (name == "swipe_left") {
         swipe(name, kLeft);
     } else if (name == "swipe_right") {
@@ -404,9 +405,7 @@ void Performer::wave() {
 
 void Performer::raise() {
     m_.begin("wind-up");
-    // Far enough away that 150 mm have room.
     Vec3f low = m_.home();
-    low.z() = std::max(low.z(), 620.0F * m_.person().scale());
     const Room inside = room(low.z());
     low.y() = inside.high.y();
     const double length =
@@ -496,6 +495,7 @@ void Performer::drag() {
 }
 
 void Performer::pose(const std::string& name) {
+    poses_ = true;
     constexpr float kQuarter = 0.5F * std::numbers::pi_v<float>;
     sim::FingerAngles shape = flat();
     Vec3f turned = Vec3f::Zero();

@@ -14,6 +14,8 @@ namespace xtrack::tools::corpus {
 
 /// Where the plane is that `touch` touches, camera Z.
 [[nodiscard]] double touch_plane_mm();
+/// The person as far back as the gestures need that must have room: raise, touch, both hands.
+[[nodiscard]] Person with_room_for(const std::vector<std::string>& names, Person person);
 
 /// The names of labels that a set of gestures asks for: `swipe_left`, `push` ...
 [[nodiscard]] std::vector<std::string> names_of(const GestureSettings& settings);
@@ -77,6 +79,7 @@ class Performer {
     Movement& m_;
     std::vector<GestureLabel>& labels_;
     int short_ = 0;
+    bool poses_ = false;  ///< the last was one: an open hand between them would be another
 };
 
 /// Both hands pinch or grab, and then pull apart, come together or turn.

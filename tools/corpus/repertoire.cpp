@@ -11,7 +11,7 @@
 namespace xtrack::tools::corpus {
 
 double touch_plane_mm() {
-    constexpr double kPlaneMm = 300.0;
+    constexpr double kPlaneMm = 420.0;
     return kPlaneMm;
 }
 
@@ -38,6 +38,23 @@ std::vector<std::string> names_of(const GestureSettings& settings) {
 bool takes_two_hands(const std::string& name) {
     return name == to_string(GestureType::two_hand_zoom) ||
            name == to_string(GestureType::two_hand_rotate);
+}
+
+Person with_room_for(const std::vector<std::string>& names, Person person) {
+    constexpr float kReachMm = 220.0F;  // of a touch
+    const bool touches = std::find(names.begin(), names.end(), "touch") != names.end();
+    const bool roomy = touches || std::any_of(names.begin(), names.end(), [](const auto& name) {
+                           return name == "raise" || takes_two_hands(name);
+                       });
+    if (roomy) {
+        const float least =
+            std::max(620.0F * person.scale(),
+                     touches ? static_cast<float>(touch_plane_mm()) + kReachMm : 0.0F);
+        const float back = std::max(0.0F, least - person.home_mm.z());
+        person.home_mm.z() += back;
+        person.chest_mm += back;
+    }
+    return person;
 }
 
 void perform_with_both(const std::string& name, Performer& right, Performer& left) {

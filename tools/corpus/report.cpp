@@ -89,7 +89,7 @@ std::vector<std::pair<std::string, Cause>> causes_of(const Tally& tally) {
 }
 
 std::string list_of_causes(const Group& group, bool explain) {
-    constexpr std::size_t kMost = 8;
+    constexpr std::size_t kMost = 6;
     std::string out;
     const auto causes = causes_of(group.tally);
     for (std::size_t i = 0; i < causes.size() && (explain || i < kMost); ++i) {

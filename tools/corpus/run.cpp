@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <optional>
 
 #include <fmt/format.h>
 #include <xtrack/gesture_recogniser.hpp>
@@ -36,11 +35,16 @@ void follow(const Sequence& sequence, Tracked& tracked, const auto& take) {
     }
 }
 
-/// The name of the machine that decides a gesture begins the gesture's name: swipe of swipe_left.
+/// Whether a machine decides a gesture: swipe of swipe_left, tap of double_tap, push of pull.
+bool decides(const std::string& machine, const std::string& gesture) {
+    return gesture.starts_with(machine) || gesture.ends_with("_" + machine) ||
+           (gesture == "pull" && machine == "push");
+}
+
 std::string why_missed(const GestureLabel& label, std::span<const Refusal> refusals) {
     for (auto r = refusals.rbegin(); r != refusals.rend(); ++r) {
         if (r->stamp >= label.start && r->stamp <= label.end + kAfterLabel &&
-            label.gesture.starts_with(r->machine)) {
+            decides(r->machine, label.gesture)) {
             return r->why;
         }
     }
@@ -145,7 +149,7 @@ Result<Tally> run(const Sequence& sequence, const GestureSettings& settings) {
     };
     std::vector<GestureEvent> heard;  // of hands that may act
     Tally of_strangers;
-    std::optional<std::size_t> owner;
+    bool owned = false;  // by one who has been there ever since
     const auto take = [&](std::span<const GestureEvent> events) {
         for (const GestureEvent& event : events) {
             if (event.type == GestureType::hand) {
@@ -157,11 +161,8 @@ Result<Tally> run(const Sequence& sequence, const GestureSettings& settings) {
             if (event.type == GestureType::engage) {
                 if (begins) {
                     ++of_strangers.engagements;
-                    of_strangers.owner_changes +=
-                        strange && owner && !sequence.strange[*owner] ? 1 : 0;
-                    owner = hand;
-                } else if (event.phase != EventPhase::update && owner == hand) {
-                    owner.reset();
+                    of_strangers.owner_changes += strange && owned ? 1 : 0;
+                    owned = owned || !strange;
                 }
             } else if (!strange) {
                 heard.push_back(event);

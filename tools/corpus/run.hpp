@@ -24,7 +24,7 @@ struct Finding {
     bool missed = false;
     bool wrong_hand = false;
     bool strange = false;  ///< a stranger's
-    /// The movement fulfils the plain definition (swipes, pushes and pulls; false of others).
+    /// The movement fulfils the plain definition (definitions::fulfilled_before()).
     bool by_definition = false;
     std::string why_not;  ///< missed: what its machine said last
 };
@@ -37,7 +37,7 @@ struct Tally {
     int sequences = 0;
     int false_events = 0;    ///< of hands that were listened to
     int strange_events = 0;  ///< of hands that should not have been
-    int owner_changes = 0;   ///< a stranger took a session that was another's
+    int owner_changes = 0;   ///< a stranger took the session after its owner had, who never left
     int engagements = 0;
     int short_of_definition = 0;
 

@@ -21,7 +21,7 @@ constexpr std::array<GestureSet, 8> kSets{{
     {"dwell", "dwell", false, ""},
     {"press", "press", false, ""},
     {"touch", "touch", false, ""},
-    {"drag", "drag", false, ""},
+    {"drag", "pinch,drag", false, ""},
 }};
 
 SimHand other(SimHand hand) { return hand == SimHand::right ? SimHand::left : SimHand::right; }
@@ -148,8 +148,9 @@ Seen seen_by(std::uint64_t index, double frame_hz) {
     return seen;
 }
 
-Sequence perform_all(const std::vector<std::string>& names, const Person& person, int times,
+Sequence perform_all(const std::vector<std::string>& names, const Person& who, int times,
                      const Seen& seen) {
+    const Person person = with_room_for(names, who);
     Sequence s = begin(to_string(person.manner), person.seed, seen);
     std::vector<std::string> order;
     for (int i = 0; i < times; ++i) {
@@ -217,7 +218,7 @@ Sequence passers_by(std::uint64_t seed, double seconds, const Seen& seen) {
 Sequence in_company(Company company, std::uint64_t seed, const std::vector<std::string>& names,
                     const Seen& seen) {
     Sequence s = begin(to_string(company), seed, seen);
-    Person owner = draw_person(seed);
+    const Person owner = with_room_for(names, draw_person(seed));
     Movement& hand = add_hand(s, owner, owner.hand, false);
     Performer performer(hand, s.labels);
     std::vector<std::string> order = names;
