@@ -95,12 +95,19 @@ Engagement::Waiting& Engagement::waiting_of(int hand_id) {
     return *oldest;
 }
 
+bool Engagement::comes_back(const Context& c, const HandReport& r) {
+    const auto off_mm = static_cast<double>((r.hand->palm_mm - owner_hand_.palm_mm).norm());
+    return kept_ && !waiting_of(r.hand->id).other && off_mm <= c.settings.engage_return_mm &&
+           in_zone(c.settings, r.hand->palm_mm, 0.0);
+}
+
 /// The hand that takes an idle session: one that has just signalled, else the one that has been
 /// still in the zone for longest.
 const HandReport* Engagement::summons(const Context& c, std::span<const HandReport> hands) {
     const GestureSettings& s = c.settings;
     const HandReport* first = nullptr;
     Stamp since;
+    kept_ = kept_ && c.sensor <= kept_until_;
     for (const HandReport& r : hands) {
         Waiting& w = waiting_of(r.hand->id);
         const bool inside = in_zone(s, r.hand->palm_mm, 0.0);
@@ -113,6 +120,12 @@ const HandReport* Engagement::summons(const Context& c, std::span<const HandRepo
             w.since = c.sensor;
         }
         w.still = still;
+        if (r.present && comes_back(c, r)) {
+            return &r;
+        }
+        if (kept_) {
+            continue;
+        }
         if (r.present && inside && r.summons) {
             return &r;
         }
@@ -199,6 +212,12 @@ void Engagement::update(const Context& c, std::span<const HandReport> hands) {
 
 void Engagement::lose(const Context& c, int hand_id) {
     if (is_engaged() && hand_id == owner_) {
+        // It may be back at once, and nobody takes its place meanwhile.
+        kept_ = true;
+        kept_until_ = c.sensor + from_ms(c.settings.engage_return_ms);
+        for (Waiting& w : waiting_) {
+            w.other = w.hand_id != owner_;
+        }
         reason_ = CancelReason::lost;
         handle(c, Event::lost);
     }
@@ -232,6 +251,7 @@ std::optional<EngageState> Engagement::idle(const Context& c, Event event) {
         case Event::summoned:
             owner_ = owner_hand_.id;
             second_ = joining_ = 0;
+            kept_ = false;
             onset_ = waiting_of(owner_).still ? waiting_of(owner_).since : c.sensor;
             inside_at_ = busy_at_ = c.sensor;
             rest_mm_ = owner_hand_.palm_mm;

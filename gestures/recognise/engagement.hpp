@@ -60,9 +60,12 @@ class Engagement : public Machine<Engagement, EngageState, EngageEvent> {
         Stamp since;
         bool still = false;
         bool tired = false;  ///< its session timed out: it must move first
+        bool other = false;  ///< it was there when the owner was lost, so that it is not the owner
     };
     Waiting& waiting_of(int hand_id);
     const HandReport* summons(const Context& c, std::span<const HandReport> hands);
+    /// The lost owner's hand under another id.
+    [[nodiscard]] bool comes_back(const Context& c, const HandReport& r);
     void watch_owner(const Context& c, const HandReport* owner);
     void watch_second(const Context& c, std::span<const HandReport> hands, const HandReport* owner);
     void send(const Context& c, EventPhase phase, CancelReason reason = CancelReason::none) const;
@@ -76,6 +79,8 @@ class Engagement : public Machine<Engagement, EngageState, EngageEvent> {
     Stamp inside_at_;  ///< the owner's last moment in the zone
     Stamp busy_at_;    ///< the owner's last deed
     Vec3f rest_mm_ = Vec3f::Zero();
+    bool kept_ = false;  ///< for an owner that was lost
+    Stamp kept_until_;
     int joining_ = 0;
     Stamp joining_since_;
     int gesture_id_ = -1;

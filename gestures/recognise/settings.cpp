@@ -96,6 +96,8 @@ constexpr std::array kFields{
     number<&S::engage_leave_ms>("engage_leave_ms", 50.0, 3000.0),
     number<&S::engage_idle_ms>("engage_idle_ms", 1000.0, 600000.0),
     number<&S::engage_idle_mm>("engage_idle_mm", 5.0, 300.0),
+    number<&S::engage_return_ms>("engage_return_ms", 0.0, 10000.0),
+    number<&S::engage_return_mm>("engage_return_mm", 20.0, 1000.0),
     number<&S::body_width_mm>("body_width_mm", 100.0, 2000.0),
     number<&S::body_height_mm>("body_height_mm", 100.0, 2000.0),
     number<&S::body_depth_mm>("body_depth_mm", 100.0, 2000.0),

@@ -70,10 +70,6 @@ Finding finding_of(const Sequence& sequence, const GestureEvent& event, std::siz
     return f;
 }
 
-bool is_false(Verdict v) {
-    return v == Verdict::wrong_hand || v == Verdict::overlap || v == Verdict::stray;
-}
-
 }  // namespace
 
 void Tally::add(const Tally& other) {

@@ -82,6 +82,10 @@ struct GestureSettings {
     double engage_leave_ms = 300.0;
     double engage_idle_ms = 15000.0;
     double engage_idle_mm = 40.0;
+    /// An owner that was lost finds its session kept for so long, within so much of where it was;
+    /// nobody else takes it meanwhile. 0..10000; 20..1000.
+    double engage_return_ms = 2000.0;
+    double engage_return_mm = 300.0;
     /// Elbows of one body lie no farther apart: to the side, up, and in depth. 100..2000. Shoulders
     /// of adults are 400 wide, and elbows spread beside them.
     double body_width_mm = 750.0;

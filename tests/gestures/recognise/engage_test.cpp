@@ -121,6 +121,32 @@ TEST(Engage, AnOwnerThatComesBackKeepsIt) {
     EXPECT_THAT(stage.story(), ElementsAre("engage begin", "swipe_left"));
 }
 
+TEST(Engage, OfAnOwnerThatWasLostIsKeptForIt) {
+    Stage stage(sessions());
+    Actor owner{{{0, at(-200)}, {1500, at(-200)}, {1501, at(-200), 70, false}, {6000, at(-200)}}};
+    owner.moments.back().seen = false;
+    Actor waits{{{0, at(250), 70, false}, {1000, at(250)}, {6000, at(250)}}};
+    waits.id = 2;
+    Actor back{{{0, at(-180), 70, false}, {2500, at(-180)}, {6000, at(-180)}}};
+    back.id = 3;
+    stage.play({owner, waits, back}, 60);
+    EXPECT_THAT(stage.story(), ElementsAre("engage begin", "engage cancel lost", "engage begin"));
+    EXPECT_EQ(stage.recogniser.session_owner(), 3);
+}
+
+TEST(Engage, OfAnOwnerThatStaysAwayIsFreeAfterTwoSeconds) {
+    Stage stage(sessions());
+    Actor owner{{{0, at(-200)}, {1500, at(-200)}, {1501, at(-200), 70, false}, {6000, at(-200)}}};
+    owner.moments.back().seen = false;
+    Actor waits{{{0, at(250), 70, false}, {1000, at(250)}, {6000, at(250)}}};
+    waits.id = 2;
+    stage.play({owner, waits}, 60);
+    EXPECT_EQ(stage.recogniser.session_owner(), 2);
+    const GestureEvent& begin = stage.events.back();
+    EXPECT_EQ(begin.type, GestureType::engage);
+    EXPECT_NEAR(to_seconds(begin.sensor), 3.5, 0.1);
+}
+
 TEST(Engage, AWaveTakesTheSessionWithoutBeingOne) {
     GestureSettings s = sessions();
     s.engage_by_stillness = false;
