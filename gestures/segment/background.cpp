@@ -28,25 +28,34 @@ void Background::reset() {
     std::fill(depth_.begin(), depth_.end(), 0.0F);
     std::fill(rival_.begin(), rival_.end(), 0.0F);
     std::fill(rival_seen_.begin(), rival_seen_.end(), 0.0F);
+    elapsed_before_ms_ = 0.0F;
+    upper_is_newer_ = false;
 }
 
 void Background::mask(std::span<const float> z, std::span<float> foreground) const {
     const float margin = settings_.margin_mm;
     for (std::size_t i = 0; i < z.size(); ++i) {
-        const bool known = depth_[i] > 0.0F && z[i] > depth_[i] - margin;
+        const bool known = (depth_[i] > 0.0F) & (z[i] > depth_[i] - margin);
         foreground[i] = known ? 0.0F : z[i];
     }
 }
 
 void Background::learn(std::span<const float> z, std::span<const std::uint8_t> hand_labels,
                        std::int64_t elapsed_ms) {
-    const auto step = static_cast<float>(std::clamp<std::int64_t>(elapsed_ms, 0, kStepMaxMs));
+    // Half of the pixels at a time: nothing here is in a hurry.
+    const std::size_t middle = z.size() / 2;
+    const bool upper = !upper_is_newer_;
+    upper_is_newer_ = upper;
+    const auto elapsed = static_cast<float>(std::clamp<std::int64_t>(elapsed_ms, 0, kStepMaxMs));
+    const float step = elapsed + elapsed_before_ms_;
+    elapsed_before_ms_ = elapsed;
     const float drift = std::min(1.0F, kDriftPerSecond * step * 1e-3F);
     const float gain = step / static_cast<float>(std::max<std::int64_t>(1, settings_.hold_ms));
     const float hand_gain =
         step / static_cast<float>(std::max<std::int64_t>(1, settings_.hand_rest_ms));
     const float margin = settings_.margin_mm;
-    for (std::size_t i = 0; i < z.size(); ++i) {
+    const std::size_t end = upper ? middle : z.size();
+    for (std::size_t i = upper ? 0 : middle; i < end; ++i) {
         const float v = z[i];
         if (v <= 0.0F) {
             continue;  // a shadow says nothing about the surface in it

@@ -29,7 +29,8 @@ class Background {
     /// Sets foreground[i] to z[i], or to 0 where z[i] is background.
     void mask(std::span<const float> z, std::span<float> foreground) const;
 
-    /// Learns one image. `hand_labels` is not 0 where a hand or its arm was found.
+    /// Learns half of one image, and the other half of the next. `hand_labels` is not 0 where a
+    /// hand or its arm was found.
     /// @param elapsed_ms since the image learnt before; 0 for the first
     void learn(std::span<const float> z, std::span<const std::uint8_t> hand_labels,
                std::int64_t elapsed_ms);
@@ -38,9 +39,11 @@ class Background {
 
  private:
     Settings settings_;
-    std::vector<float> depth_;       ///< 0 = not known
-    std::vector<float> rival_;       ///< 0 = none
-    std::vector<float> rival_seen_;  ///< 0..1 of the hold
+    std::vector<float> depth_;        ///< 0 = not known
+    std::vector<float> rival_;        ///< 0 = none
+    std::vector<float> rival_seen_;   ///< 0..1 of the hold
+    float elapsed_before_ms_ = 0.0F;  ///< between the two images before this
+    bool upper_is_newer_ = false;     ///< the first half of the pixels was learnt last
 };
 
 }  // namespace xtrack::segment

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 
 #include "gestures/segment/grid.hpp"
@@ -10,22 +10,39 @@
 namespace xtrack::segment {
 
 /// Distances are counted in fifths of a grid pixel: chamfer 5-7-11 (Borgefors 1986), within 2 %.
-inline constexpr std::int32_t kChamferUnit = 5;
-inline constexpr std::int32_t kChamferFar = std::numeric_limits<std::int32_t>::max() / 2;
+inline constexpr int kChamferUnit = 5;
+/// Distances are written as nearness: this where the distance is 0, less by kChamferUnit a pixel,
+/// and 0 where it is not known.
+inline constexpr std::uint16_t kNearnessMax = 65535;
 
-/// Pixels [x_begin, x_end) x [y_begin, y_end) of the grid without padding.
-struct Box {
-    int x_begin = 0, y_begin = 0, x_end = 0, y_end = 0;
+/// Raises every value in the box to the largest of its neighbours' minus the step to it: turns
+/// seeds of nearness into nearness to the nearest seed. A rim of kPad pixels round the box is read.
+/// @param label where not empty: nothing spreads from one label to another; the rim is read, too
+void spread(const Grid& grid, const Box& box, std::span<std::uint16_t> value,
+            std::span<const std::uint16_t> label = {});
+
+/// The distance that a nearness stands for, grid px.
+[[nodiscard]] inline float distance_px(std::uint16_t nearness) noexcept {
+    return static_cast<float>(kNearnessMax - nearness) * (1.0F / static_cast<float>(kChamferUnit));
+}
+
+/// What spread() does, for the forms of it.
+struct SpreadRows {
+    std::uint16_t* value = nullptr;        ///< first pixel of the box
+    const std::uint16_t* label = nullptr;  ///< the same; nullptr: all is one
+    std::ptrdiff_t stride = 0;             ///< pixels from one row to the next
+    int count = 0;                         ///< pixels of a row
+    int rows = 0;
 };
+inline constexpr int kChamferDiagonal = 7;
+inline constexpr int kChamferKnight = 11;
 
-/// Lowers every distance in the box to the least of its neighbours' plus the step to it. Call with
-/// seeds set to their start (0, or kChamferUnit) and everything else kChamferFar, including a rim
-/// of kPad pixels round the box.
-void spread_distance(const Grid& grid, Box box, std::span<std::int32_t> distance);
+/// The reference form, plain C++.
+void spread_rows_scalar(const SpreadRows& box) noexcept;
 
-/// Raises every value in the box to the largest of its neighbours' minus the step to it, within one
-/// label: the union of balls round seeds.
-void spread_balls(const Grid& grid, Box box, std::span<const int> label,
-                  std::span<std::int32_t> ball);
+#if XTRACK_WITH_HIGHWAY
+/// The same values by the fastest form that this CPU has.
+void spread_rows_highway(const SpreadRows& box) noexcept;
+#endif
 
 }  // namespace xtrack::segment

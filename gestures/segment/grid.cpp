@@ -5,18 +5,20 @@
 #include <array>
 #include <cstdint>
 
+#include "gestures/segment/block_row.hpp"
+
 namespace xtrack::segment {
 
 namespace {
 
-/// A grid this wide resolves a finger (16 mm) with 4 pixels at 1 m and a 60 degree camera.
-constexpr int kGridWidthMax = 420;
 /// Pixels of a block within this of the nearest one are the same surface, mm.
 constexpr float kBlockBandMm = 15.0F;
 /// Of eight neighbours, so many must lie on the same surface; fewer is a flying pixel.
 constexpr int kNeighboursMin = 3;
 /// Of eight neighbours, so many must lie on one surface to close a pinhole between them.
 constexpr int kNeighboursToClose = 4;
+/// More steps of depth than this would not fit the sums of a block's pixels.
+constexpr float kBandMaxSteps = 65535.0F / (2 * kBlockSamples * kBlockSamples);
 /// Rounds of the fixed-point inversion of the lens distortion; converges to 1e-4 px well before.
 constexpr int kUndistortRounds = 20;
 
@@ -40,18 +42,17 @@ Vec2f undistorted(const Pinhole& camera, double x, double y) {
 
 }  // namespace
 
-void Grid::create(const Rig& rig, Size size) {
-    scale = 1;
-    while (size.width / scale > kGridWidthMax) {
-        ++scale;
-    }
+void Grid::create(const Rig& rig, Size size, int block_scale, int step_scale) {
+    scale = block_scale;
     inner_width = size.width / scale;
     inner_height = size.height / scale;
     width = inner_width + 2 * kPad;
     height = inner_height + 2 * kPad;
     const auto n = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     z.assign(n, 0.0F);
-    scratch_.assign(n, 0.0F);
+    blocks_.assign(n, 0.0F);
+    kept_.assign(n, 0.0F);
+    closed_.assign(n, 0.0F);
     ray.assign(n, Vec2f::Zero());
 
     // A depth image may be a scaled version of the calibrated one.
@@ -66,6 +67,7 @@ void Grid::create(const Rig& rig, Size size) {
     const double cx = (m(0, 2) + 0.5) * sx - 0.5;
     const double cy = (m(1, 2) + 0.5) * sy - 0.5;
     inverse_focal = static_cast<float>(2.0 * scale / (fx + fy));
+    step_slope = kSteepest * static_cast<float>(2.0 * step_scale / (fx + fy));
     for (int y = 0; y < inner_height; ++y) {
         for (int x = 0; x < inner_width; ++x) {
             const double px = (x + 0.5) * scale - 0.5;
@@ -76,79 +78,68 @@ void Grid::create(const Rig& rig, Size size) {
     }
 }
 
-namespace {
-
-struct LoadRow {
-    const DepthFrame& depth;
-    int low = 0;
-    int band = 0;
-    float unit = 0.0F;
-};
-
-/// One row of the grid. `kScale` 0: the scale is not known to the compiler.
-template <int kScale>
-void load_row(const LoadRow& from, int any_scale, int y, int width, float* out) {
-    constexpr int kNone = 1 << 20;
-    const int scale = kScale > 0 ? kScale : any_scale;
-    const std::uint16_t* const first = from.depth.depth.row(y * scale);
-    const std::ptrdiff_t stride = from.depth.depth.row(y * scale + (scale > 1 ? 1 : 0)) - first;
-    for (int x = 0; x < width; ++x) {
-        int nearest = kNone;
-        for (int dy = 0; dy < scale; ++dy) {
-            for (int dx = 0; dx < scale; ++dx) {
-                const int d = first[dy * stride + x * scale + dx];
-                nearest = std::min(nearest, d >= from.low ? d : kNone);
-            }
-        }
-        int sum = 0;
-        int count = 0;
-        for (int dy = 0; dy < scale; ++dy) {
-            for (int dx = 0; dx < scale; ++dx) {
-                const int d = first[dy * stride + x * scale + dx];
-                const int same = d >= nearest && d <= nearest + from.band ? 1 : 0;
-                sum += same * d;
-                count += same;
-            }
-        }
-        out[x] = from.unit * static_cast<float>(sum) / static_cast<float>(std::max(count, 1));
-    }
-}
-
-}  // namespace
-
-void Grid::load(const DepthFrame& depth, float near_mm) {
+void Grid::load(const DepthFrame& depth, float near_mm, const Box& box) {
+    // Each step looks at a pixel's neighbours, so what it is made from is wider.
+    const Box closing = grown(box, 1);
+    const Box keeping = grown(box, 2);
+    const Box loading = grown(box, 3);
     const auto unit = static_cast<float>(depth.depth_unit_mm);
-    const float lowest = std::max(1.0F, std::ceil(near_mm / unit));
-    const LoadRow from{depth, static_cast<int>(lowest), static_cast<int>(kBlockBandMm / unit),
-                       unit};
-    // Written out for the usual scales, so that blocks are unrolled and several go at once.
-    const auto row = scale == 1 ? &load_row<1> : (scale == 2 ? &load_row<2> : &load_row<0>);
-    for (int y = 0; y < inner_height; ++y) {
-        row(from, scale, y, inner_width, z.data() + index(0, y));
+    BlockRow row;
+    row.scale = scale;
+    row.count = loading.width();
+    row.low = static_cast<std::uint16_t>(std::clamp(std::ceil(near_mm / unit), 1.0F, 65534.0F));
+    row.band = static_cast<std::uint16_t>(std::min(kBlockBandMm / unit, kBandMaxSteps));
+    row.unit_mm = unit;
+    row.stride = depth.depth.height() > 1 ? depth.depth.row(1) - depth.depth.row(0) : 0;
+    for (int y = loading.y_begin; y < loading.y_end; ++y) {
+        row.depth = depth.depth.row(y * scale) + loading.x_begin * scale;
+        row.z_mm = blocks_.data() + index(loading.x_begin, y);
+        block_row(row);
     }
-    drop_lone();
-    close_pinholes();
-    close_pinholes();
+    drop_lone(keeping, blocks_, kept_);
+    close_pinholes(closing, kept_, closed_);
+    close_pinholes(box, closed_, z);
 }
 
-void Grid::close_pinholes() {
+float Grid::area_mm2(int begin, int end) const noexcept {
+    // Four sums, as one would wait for every addition.
+    std::array<float, 4> sums{};
+    int i = begin;
+    for (; i + 4 <= end; i += 4) {
+        for (std::size_t k = 0; k < sums.size(); ++k) {
+            const float v = z[static_cast<std::size_t>(i) + k];
+            sums[k] += v * v;
+        }
+    }
+    for (; i < end; ++i) {
+        sums[0] += z[static_cast<std::size_t>(i)] * z[static_cast<std::size_t>(i)];
+    }
+    return ((sums[0] + sums[1]) + (sums[2] + sums[3])) * inverse_focal * inverse_focal;
+}
+
+void Grid::close_pinholes(const Box& box, const std::vector<float>& from,
+                          std::vector<float>& to) const {
     const std::array<int, 8> offsets = {-width - 1, -width,    -width + 1, -1,
                                         1,          width - 1, width,      width + 1};
-    std::copy(z.begin(), z.end(), scratch_.begin());
-    for (int y = 0; y < inner_height; ++y) {
-        const int begin = index(0, y);
-        for (int i = begin; i < begin + inner_width; ++i) {
-            const float* here = scratch_.data() + i;
+    for (int y = box.y_begin; y < box.y_end; ++y) {
+        const int begin = index(box.x_begin, y);
+        const int end = index(box.x_end, y);
+        std::copy(from.begin() + begin, from.begin() + end, to.begin() + begin);
+        for (int i = begin; i < end; ++i) {
+            const float* here = from.data() + i;
+            if (here[0] > 0.0F) {
+                continue;
+            }
             // A pinhole has skin on two of its four sides at least; most empty pixels have none.
             const int sides = (here[-1] > 0.0F ? 1 : 0) + (here[1] > 0.0F ? 1 : 0) +
                               (here[-width] > 0.0F ? 1 : 0) + (here[width] > 0.0F ? 1 : 0);
-            if (here[0] > 0.0F || sides < 2) {
+            if (sides < 2) {
                 continue;
             }
             float nearest = 1e9F;
             int valid = 0;
             for (const int o : offsets) {
-                const float v = scratch_[static_cast<std::size_t>(i + o)];
+                const float v = here[o];
                 if (v > 0.0F) {
                     ++valid;
                     nearest = std::min(nearest, v);
@@ -161,24 +152,23 @@ void Grid::close_pinholes() {
             float sum = 0.0F;
             int count = 0;
             for (const int o : offsets) {
-                const float v = scratch_[static_cast<std::size_t>(i + o)];
+                const float v = here[o];
                 const bool same = v > 0.0F && v < limit;
                 sum += same ? v : 0.0F;
                 count += same ? 1 : 0;
             }
             if (count >= kNeighboursToClose) {
-                z[static_cast<std::size_t>(i)] = sum / static_cast<float>(count);
+                to[static_cast<std::size_t>(i)] = sum / static_cast<float>(count);
             }
         }
     }
 }
 
-void Grid::drop_lone() {
-    std::copy(z.begin(), z.end(), scratch_.begin());
-    for (int y = 0; y < inner_height; ++y) {
-        const float* in = scratch_.data() + index(0, y);
-        float* out = z.data() + index(0, y);
-        for (int x = 0; x < inner_width; ++x) {
+void Grid::drop_lone(const Box& box, const std::vector<float>& from, std::vector<float>& to) const {
+    for (int y = box.y_begin; y < box.y_end; ++y) {
+        const float* in = from.data() + index(box.x_begin, y);
+        float* out = to.data() + index(box.x_begin, y);
+        for (int x = 0; x < box.width(); ++x) {
             const float v = in[x];
             const float limit = step_limit_mm(v);
             const auto same = [&](int o) { return std::abs(in[x + o] - v) < limit ? 1 : 0; };

@@ -20,6 +20,8 @@ constexpr float kReachCeilingMm = 175.0F;
 constexpr float kTipToPalmMm = 135.0F;
 /// And a candidate this far loses half its weight: a forearm is as thick as a fist.
 constexpr float kTipToPalmFadeMm = 105.0F;
+/// A palm that is followed may turn its edge: it may then be smaller by this than a new one.
+constexpr float kEdgeOnShare = 1.0F;
 /// Thinner than this is a finger, thicker by the ramp is not: inscribed radius, mm.
 constexpr float kFingerRadiusMm = 11.5F;
 constexpr float kFingerRampMm = 5.0F;
@@ -35,7 +37,7 @@ constexpr float kWristToRadii = 1.9F;
 constexpr float kWristDefaultRadii = 1.5F;
 constexpr int kWristBins = 9;
 /// Samples of a part that are looked at; more change nothing and cost time.
-constexpr int kSamplesMax = 3500;
+constexpr std::size_t kSamplesMax = 450;
 /// An expected palm explains a candidate this near, mm.
 constexpr float kPriorReachMm = 90.0F;
 
@@ -63,89 +65,123 @@ constexpr float kNearerMm = 100.0F;
 constexpr float kPalmUsualMinMm = 32.0F;
 constexpr float kPalmUsualMaxMm = 54.0F;
 
-struct Samples {
-    const Grid& grid;
-    const Parts& parts;
-    std::span<const int> pixels;
-    std::size_t step;
-
-    template <typename F>
-    void each(F&& f) const {
-        for (std::size_t k = 0; k < pixels.size(); k += step) {
-            f(pixels[k], grid.point(pixels[k]));
-        }
-    }
-};
-
 float ramp(float v, float from, float to) {
     return std::clamp((v - from) / (to - from), 0.0F, 1.0F);
 }
 
-int farthest(const Samples& s, const Vec3f& from) {
+}  // namespace
+
+void PalmSearch::create(const Grid& grid, const TrackerSettings& settings) {
+    settings_ = settings;
+    thick_.reserve(grid.size());
+    samples_.reserve(kSamplesMax);
+}
+
+void PalmSearch::take(const Grid& grid, const Parts& parts, const Part& part) {
+    thick_.clear();
+    samples_.clear();
+    const auto pixels = parts.pixels(part);
+    const std::size_t step = 1 + pixels.size() / kSamplesMax;
+    const auto weight = static_cast<float>(step);
+    int row_begin = 0;
+    int row_end = 0;
+    bool border_row = false;
+    std::size_t next = 0;
+    for (std::size_t k = 0; k < pixels.size(); ++k) {
+        const int i = pixels[k];
+        if (i >= row_end) {
+            const int y = grid.y_of(i);  // a division, so once a row
+            row_begin = grid.index(0, y);
+            row_end = row_begin + grid.width;
+            border_row = y <= 1 || y >= grid.inner_height - 2;
+        }
+        const int x = i - row_begin;
+        const float pitch = grid.pitch_mm(grid.z[static_cast<std::size_t>(i)]);
+        const float radius = parts.radius_px(i) * pitch;
+        const bool thick =
+            radius >= kEdgeOnShare * static_cast<float>(settings_.palm_radius_min_mm);
+        const bool sampled = k == next;
+        if (!thick && !sampled) {
+            continue;
+        }
+        const Sample s{grid.point(i),
+                       radius,
+                       weight * pitch * pitch,
+                       0.0F,
+                       border_row || x <= 1 || x >= grid.inner_width - 2,
+                       i};
+        if (thick) {
+            thick_.push_back(s);
+        }
+        if (sampled) {
+            samples_.push_back(s);
+            next += step;
+        }
+    }
+}
+
+const PalmSearch::Sample& PalmSearch::farthest(const Vec3f& from) const {
     float best = -1.0F;
-    int pixel = s.pixels[0];
-    s.each([&](int i, const Vec3f& p) {
-        const float d = (p - from).squaredNorm();
+    const Sample* found = &samples_.front();
+    for (const Sample& s : samples_) {
+        const float d = (s.p_mm - from).squaredNorm();
         if (d > best) {
             best = d;
-            pixel = i;
+            found = &s;
         }
-    });
-    return pixel;
+    }
+    return *found;
 }
 
 /// The thickest place within a hand's length of an end.
-int thickest_near(const Samples& s, const Vec3f& end, float limit_mm) {
+const PalmSearch::Sample* PalmSearch::thickest_near(const Vec3f& end, float limit_mm) const {
     float best = 0.0F;
-    int pixel = -1;
-    for (const int i : s.pixels) {
-        const float r = s.parts.radius_mm(s.grid, i);
-        if (r <= best) {
+    const Sample* found = nullptr;
+    for (const Sample& s : thick_) {
+        if (s.radius_mm <= best) {
             continue;
         }
-        const float d = (s.grid.point(i) - end).norm();
+        const float d = (s.p_mm - end).norm();
         if (d > limit_mm) {
             continue;
         }
-        const float weighted = r * (1.0F - 0.5F * ramp(d, kTipToPalmFadeMm, kTipToPalmMm + 30.0F));
+        const float weighted =
+            s.radius_mm * (1.0F - 0.5F * ramp(d, kTipToPalmFadeMm, kTipToPalmMm + 30.0F));
         if (weighted > best) {
             best = weighted;
-            pixel = i;
+            found = &s;
         }
     }
-    return pixel;
+    return found;
 }
 
 /// Where the forearm is: thick surface outside the palm's circle pulls, fingers push.
-void find_arm(const Samples& s, const Part& part, const PalmPrior* prior, PalmCandidate& c) {
+void PalmSearch::find_arm(const Part& part, const PalmPrior* prior, PalmCandidate& c) {
     const float r = c.radius_mm;
     const float ring = kRingRadii * r;
     const float reach = reach_limit_mm(r);
     Vec3f thick = Vec3f::Zero();
     Vec3f thin = Vec3f::Zero();
-    float thick_mass = 0.0F;
     float arm_mass = 0.0F;
     float mass = 0.0F;
-    s.each([&](int i, const Vec3f& p) {
+    for (Sample& s : samples_) {
         mass += 1.0F;
-        const Vec3f d = p - c.centre_mm;
+        const Vec3f d = s.p_mm - c.centre_mm;
         const float n = d.norm();
+        s.distance_mm = n;
         if (n < ring || n > 2.0F * reach) {
-            return;
+            continue;
         }
         const Vec3f u = d / n;
         if (n > reach) {
             thick += kArmWeight * u;
-            thick_mass += kArmWeight;
             arm_mass += 1.0F;
-            return;
+            continue;
         }
-        const float t =
-            ramp(s.parts.radius_mm(s.grid, i), kFingerRadiusMm, kFingerRadiusMm + kFingerRampMm);
+        const float t = ramp(s.radius_mm, kFingerRadiusMm, kFingerRadiusMm + kFingerRampMm);
         thick += t * u;
-        thick_mass += t;
         thin += (1.0F - t) * u;
-    });
+    }
     Vec3f a = (thick - kFingerWeight * thin) / std::max(1.0F, mass);
     if (part.root_pixels > 0) {
         const Vec3f d = part.root_mm - c.centre_mm;
@@ -160,23 +196,23 @@ void find_arm(const Samples& s, const Part& part, const PalmPrior* prior, PalmCa
     c.arm_seen = arm_mass > 0.05F * mass || part.root_pixels > 0;
 }
 
-void find_wrist(const Samples& s, PalmCandidate& c) {
+void PalmSearch::find_wrist(PalmCandidate& c) const {
     const float r = c.radius_mm;
     std::array<float, kWristBins> width{};
     const float bin = (kWristToRadii - kWristFromRadii) * r / kWristBins;
-    s.each([&](int i, const Vec3f& p) {
-        const Vec3f d = p - c.centre_mm;
-        const float t = d.dot(c.arm_direction) - kWristFromRadii * r;
+    for (const Sample& s : samples_) {
+        const Vec3f d = s.p_mm - c.centre_mm;
+        const float along = d.dot(c.arm_direction);
+        const float t = along - kWristFromRadii * r;
         // Across the arm: a thumb that hangs beside the wrist is not its width.
-        if (t < 0.0F || (d - d.dot(c.arm_direction) * c.arm_direction).norm() > 1.3F * r) {
-            return;
+        if (t < 0.0F || s.distance_mm * s.distance_mm - along * along > 1.69F * r * r) {
+            continue;
         }
         const auto b = static_cast<std::size_t>(t / bin);
         if (b < width.size()) {
-            const float pitch = s.grid.pitch_mm(s.grid.z[static_cast<std::size_t>(i)]);
-            width[b] += pitch * pitch;
+            width[b] += s.area_mm2;
         }
-    });
+    }
     float least = 1e9F;
     for (const float v : width) {
         least = v > 0.0F ? std::min(least, v) : least;
@@ -190,8 +226,7 @@ void find_wrist(const Samples& s, PalmCandidate& c) {
     }
 }
 
-void judge(const Samples& s, const Part& part, const TrackerSettings& settings,
-           std::span<const Body> bodies, PalmCandidate& c) {
+void PalmSearch::judge(const Part& part, std::span<const Body> bodies, PalmCandidate& c) const {
     const float reach = reach_limit_mm(c.radius_mm);
     float finger_area = 0.0F;
     float arm_depth = 0.0F;
@@ -202,35 +237,27 @@ void judge(const Samples& s, const Part& part, const TrackerSettings& settings,
     float far = 0.0F;
     bool arm_at_border = false;
     bool hand_at_border = false;
-    const Grid& grid = s.grid;
-    const auto weight = static_cast<float>(s.step);
-    s.each([&](int i, const Vec3f& p) {
-        const Vec3f d = p - c.centre_mm;
-        const float along = d.dot(c.arm_direction);
-        const int x = grid.x_of(i);
-        const int y = grid.y_of(i);
-        const bool border =
-            x <= 1 || y <= 1 || x >= grid.inner_width - 2 || y >= grid.inner_height - 2;
-        if (along > c.wrist_mm) {
-            arm_depth += p.z();
+    for (const Sample& s : samples_) {
+        const Vec3f d = s.p_mm - c.centre_mm;
+        if (d.dot(c.arm_direction) > c.wrist_mm) {
+            arm_depth += s.p_mm.z();
             arm_count += 1.0F;
-            arm_at_border |= border;
-            return;
+            arm_at_border |= s.border;
+            continue;
         }
-        const float n = d.norm();
+        const float n = s.distance_mm;
         if (n > reach) {
             over += 1.0F;
-            return;
+            continue;
         }
         inside += 1.0F;
-        const float pitch = grid.pitch_mm(p.z());
-        inside_area += weight * pitch * pitch;
+        inside_area += s.area_mm2;
         far = std::max(far, n);
-        hand_at_border |= border;
-        if (n > kRingRadii * c.radius_mm && s.parts.radius_mm(grid, i) < kFingerRadiusMm) {
-            finger_area += weight * pitch * pitch;
+        hand_at_border |= s.border;
+        if (n > kRingRadii * c.radius_mm && s.radius_mm < kFingerRadiusMm) {
+            finger_area += s.area_mm2;
         }
-    });
+    }
     c.reach_mm = far;
     float score = kScoreBase;
     score += kScoreFingers * std::min(1.0F, finger_area / kFingerAreaMm2);
@@ -251,7 +278,7 @@ void judge(const Samples& s, const Part& part, const TrackerSettings& settings,
                                  ramp(c.radius_mm, kPalmUsualMaxMm, kPalmUsualMaxMm + 10.0F));
     score -= kScoreSize * usual;
     // A shoulder, a neck, a face: hardly nearer than the body beside it.
-    const auto ahead = static_cast<float>(settings.ahead_of_body_mm);
+    const auto ahead = static_cast<float>(settings_.ahead_of_body_mm);
     for (const Body& body : bodies) {
         const bool own = body.label == part.body;
         const float need = own ? ahead : kAheadOfStrangers * ahead;
@@ -268,63 +295,60 @@ void judge(const Samples& s, const Part& part, const TrackerSettings& settings,
     c.score = std::clamp(score, 0.0F, 1.0F);
 }
 
-}  // namespace
-
 float reach_limit_mm(float palm_radius_mm) {
     return std::clamp(kReachRadii * palm_radius_mm, kReachFloorMm, kReachCeilingMm);
 }
 
-int search_palms(const Grid& grid, const Parts& parts, int part_index,
-                 std::span<const PalmPrior> priors, const TrackerSettings& settings,
-                 std::span<PalmCandidate> out) {
+int PalmSearch::search(const Grid& grid, const Parts& parts, int part_index,
+                       std::span<const PalmPrior> priors, std::span<PalmCandidate> out) {
     const Part& part = parts.parts()[static_cast<std::size_t>(part_index)];
-    const auto pixels = parts.pixels(part);
-    const std::size_t step = 1 + pixels.size() / kSamplesMax;
-    const Samples s{grid, parts, pixels, step};
+    take(grid, parts, part);
 
     Vec3f centroid = Vec3f::Zero();
-    float nearest = 1e9F;
-    int nearest_pixel = pixels[0];
-    float count = 0.0F;
-    s.each([&](int i, const Vec3f& p) {
-        centroid += p;
-        count += 1.0F;
-        if (p.z() < nearest) {
-            nearest = p.z();
-            nearest_pixel = i;
-        }
-    });
-    centroid /= count;
+    const Sample* nearest = &samples_.front();
+    for (const Sample& s : samples_) {
+        centroid += s.p_mm;
+        nearest = s.p_mm.z() < nearest->p_mm.z() ? &s : nearest;
+    }
+    centroid /= static_cast<float>(samples_.size());
 
-    std::array<int, kCandidatesMax> palms{};
+    std::array<const Sample*, kCandidatesMax> palms{};
     std::size_t found = 0;
     const auto add = [&](const Vec3f& end, float limit_mm) {
-        const int palm = thickest_near(s, end, limit_mm);
-        if (palm >= 0 && found < palms.size()) {
+        const Sample* const palm = thickest_near(end, limit_mm);
+        if (palm != nullptr && found < palms.size()) {
             palms[found++] = palm;
         }
     };
     for (const PalmPrior& prior : priors) {
         add(prior.palm_mm, std::max(30.0F, 0.9F * prior.palm_radius_mm));
     }
-    const Vec3f a = grid.point(farthest(s, centroid));
+    const Vec3f a = farthest(centroid).p_mm;
     add(a, kTipToPalmMm);
-    const Vec3f b = grid.point(farthest(s, a));
-    add(b, kTipToPalmMm);
+    add(farthest(a).p_mm, kTipToPalmMm);
     if (part.root_pixels > 0) {
-        add(grid.point(farthest(s, part.root_mm)), kTipToPalmMm);
+        add(farthest(part.root_mm).p_mm, kTipToPalmMm);
     }
-    add(grid.point(nearest_pixel), kTipToPalmMm);
+    add(nearest->p_mm, kTipToPalmMm);
 
     int written = 0;
     for (std::size_t k = 0; k < found && written < static_cast<int>(out.size()); ++k) {
         PalmCandidate c;
         c.part = part_index;
-        c.pixel = palms[k];
-        c.centre_mm = grid.point(c.pixel);
-        c.radius_mm = parts.radius_mm(grid, c.pixel);
-        if (c.radius_mm < static_cast<float>(settings.palm_radius_min_mm) ||
-            c.radius_mm > static_cast<float>(settings.palm_radius_max_mm)) {
+        c.pixel = palms[k]->pixel;
+        c.centre_mm = palms[k]->p_mm;
+        c.radius_mm = palms[k]->radius_mm;
+        float nearest_prior = kPriorReachMm;
+        for (std::size_t m = 0; m < priors.size(); ++m) {
+            const float d = (priors[m].palm_mm - c.centre_mm).norm();
+            if (d < nearest_prior) {
+                nearest_prior = d;
+                c.prior = static_cast<int>(m);
+            }
+        }
+        if (c.radius_mm < (c.prior >= 0 ? kEdgeOnShare : 1.0F) *
+                              static_cast<float>(settings_.palm_radius_min_mm) ||
+            c.radius_mm > static_cast<float>(settings_.palm_radius_max_mm)) {
             continue;
         }
         bool known = false;
@@ -335,17 +359,9 @@ int search_palms(const Grid& grid, const Parts& parts, int part_index,
         if (known) {
             continue;
         }
-        float nearest_prior = kPriorReachMm;
-        for (std::size_t m = 0; m < priors.size(); ++m) {
-            const float d = (priors[m].palm_mm - c.centre_mm).norm();
-            if (d < nearest_prior) {
-                nearest_prior = d;
-                c.prior = static_cast<int>(m);
-            }
-        }
-        find_arm(s, part, c.prior >= 0 ? &priors[static_cast<std::size_t>(c.prior)] : nullptr, c);
-        find_wrist(s, c);
-        judge(s, part, settings, parts.bodies(), c);
+        find_arm(part, c.prior >= 0 ? &priors[static_cast<std::size_t>(c.prior)] : nullptr, c);
+        find_wrist(c);
+        judge(part, parts.bodies(), c);
         out[static_cast<std::size_t>(written++)] = c;
     }
     return written;

@@ -5,8 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "gestures/segment/chamfer.hpp"
-
 namespace xtrack::segment {
 
 namespace {
@@ -20,229 +18,243 @@ constexpr float kBodyCoreMinMm2 = 400.0F;
 /// no front, so the difference is limited, mm.
 constexpr double kFrontSigma = 1.3;
 constexpr double kFrontMaxMm = 60.0;
+/// A hand before its own body is one surface with it, by way of the arm; a step of this much ends
+/// it all the same, mm. Fingers before their palm make smaller ones.
+constexpr float kOcclusionMm = 60.0F;
+/// Surfaces are counted in 16 bits.
+constexpr int kLabelsMax = 65535;
+
+std::array<int, 8> neighbours(int w) { return {-w - 1, -w, -w + 1, -1, 1, w - 1, w, w + 1}; }
 
 }  // namespace
 
 void Parts::create(const Grid& grid) {
     const std::size_t n = grid.size();
+    components_.create(grid);
+    pieces_.reserve(n);
+    has_core_.reserve(n + 1);
     label_.assign(n, 0);
-    parent_.assign(n + 1, 0);
-    area_.assign(n + 1, 0.0F);
-    distance_.assign(n, 0);
+    nearness_.assign(n, 0);
     ball_.assign(n, 0);
-    part_of_.assign(n, -1);
-    pixels_.assign(n, 0);
+    part_of_.assign(n, kNone);
+    pixels_.reserve(n);
     parts_.reserve(kPartsMax);
     bodies_.reserve(kPartsMax);
 }
 
 void Parts::find(const Grid& grid, std::span<const float> foreground, float thick_mm,
                  float area_min_mm2) {
-    label_surfaces(grid, foreground);
-    // Crumbs are no surface at all: they neither bound nor carry a limb.
-    for (std::size_t i = 0; i < label_.size(); ++i) {
-        if (label_[i] != 0) {
-            const int root = root_of(label_[i]);
-            label_[i] = area_[static_cast<std::size_t>(root)] >= area_min_mm2 ? root : 0;
-        }
-    }
+    label_surfaces(grid, foreground, area_min_mm2);
     measure_distance(grid);
     mark_body(grid, thick_mm);
     collect(grid, area_min_mm2);
 }
 
-int Parts::root_of(int label) noexcept {
-    while (parent_[static_cast<std::size_t>(label)] != label) {
-        const int up = parent_[static_cast<std::size_t>(label)];
-        parent_[static_cast<std::size_t>(label)] = parent_[static_cast<std::size_t>(up)];
-        label = up;
+void Parts::label_surfaces(const Grid& grid, std::span<const float> foreground,
+                           float area_min_mm2) {
+    const float* const z = foreground.data();
+    // What is no depth is 0, which is a step away from everything.
+    components_.find_in(grid, grid.whole(), foreground, [&](int a, int b) {
+        return std::abs(z[a] - z[b]) < grid.step_limit_mm(std::min(z[a], z[b])) && z[b] > 0.0F;
+    });
+    pieces_.assign(static_cast<std::size_t>(components_.count()), {});
+    for (const Components::Run& run : components_.runs()) {
+        pieces_[static_cast<std::size_t>(run.component)].area_mm2 +=
+            grid.area_mm2(run.begin, run.end);
     }
-    return label;
+    // Crumbs are no surface at all: they neither bound nor carry a limb.
+    int labels = 0;
+    for (Piece& piece : pieces_) {
+        const bool counts = piece.area_mm2 >= area_min_mm2 && labels < kLabelsMax;
+        piece.number = counts ? ++labels : 0;
+    }
+    has_core_.assign(static_cast<std::size_t>(labels) + 1, 0);
+    std::fill(label_.begin(), label_.end(), std::uint16_t{0});
+    box_ = {grid.inner_width, grid.inner_height, 0, 0};
+    for (const Components::Run& run : components_.runs()) {
+        const int number = pieces_[static_cast<std::size_t>(run.component)].number;
+        if (number == 0) {
+            continue;
+        }
+        std::fill(label_.begin() + run.begin, label_.begin() + run.end,
+                  static_cast<std::uint16_t>(number));
+        const int y = grid.y_of(run.begin);
+        const int x = run.begin - grid.index(0, y);
+        box_ = {std::min(box_.x_begin, x), std::min(box_.y_begin, y),
+                std::max(box_.x_end, x + run.end - run.begin), std::max(box_.y_end, y + 1)};
+    }
+    repeat_border(grid);
 }
 
-void Parts::label_surfaces(const Grid& grid, std::span<const float> foreground) {
-    int labels = 0;
-    const int w = grid.width;
-    const auto join = [&](int a, int b) {
-        a = root_of(a);
-        b = root_of(b);
-        if (a != b) {
-            const int low = std::min(a, b);
-            const int high = std::max(a, b);
-            parent_[static_cast<std::size_t>(high)] = low;
-            area_[static_cast<std::size_t>(low)] += area_[static_cast<std::size_t>(high)];
-        }
-        return std::min(a, b);
-    };
-    const float area_scale = grid.inverse_focal * grid.inverse_focal;
+/// Beyond the border of the image a surface goes on.
+void Parts::repeat_border(const Grid& grid) {
+    const auto w = static_cast<std::ptrdiff_t>(grid.width);
     for (int y = 0; y < grid.inner_height; ++y) {
-        const int begin = grid.index(0, y);
-        for (int i = begin; i < begin + grid.inner_width; ++i) {
-            const auto k = static_cast<std::size_t>(i);
-            const float v = foreground[k];
-            if (v <= 0.0F) {
-                label_[k] = 0;
-                continue;
-            }
-            const float limit = grid.step_limit_mm(v);
-            int label = 0;
-            for (const int n : {i - 1, i - w, i - w - 1, i - w + 1}) {
-                const auto m = static_cast<std::size_t>(n);
-                if (label_[m] != 0 && std::abs(foreground[m] - v) < limit) {
-                    label = label == 0 ? root_of(label_[m]) : join(label, label_[m]);
-                }
-            }
-            if (label == 0) {
-                label = ++labels;
-                parent_[static_cast<std::size_t>(label)] = label;
-                area_[static_cast<std::size_t>(label)] = 0.0F;
-            }
-            label_[k] = label;
-            area_[static_cast<std::size_t>(label)] += v * v * area_scale;
-        }
+        const auto row = label_.begin() + static_cast<std::ptrdiff_t>(y + kPad) * w;
+        std::fill(row, row + kPad, row[kPad]);
+        std::fill(row + w - kPad, row + w, row[w - kPad - 1]);
+    }
+    for (std::ptrdiff_t k = 0; k < kPad; ++k) {
+        const auto first = label_.begin() + kPad * w;
+        std::copy(first, first + w, label_.begin() + k * w);
+        const auto last = label_.end() - (kPad + 1) * w;
+        std::copy(last, last + w, label_.end() - (k + 1) * w);
     }
 }
 
 void Parts::measure_distance(const Grid& grid) {
-    const int w = grid.width;
-    std::fill(distance_.begin(), distance_.end(),
-              kChamferFar);  // padding: a border ends no surface
+    constexpr auto kRim = static_cast<std::uint16_t>(kNearnessMax - kChamferUnit);
+    const std::ptrdiff_t w = grid.width;
     for (int y = 0; y < grid.inner_height; ++y) {
         const int begin = grid.index(0, y);
-        const bool top = y == 0;
-        const bool bottom = y == grid.inner_height - 1;
+        const std::uint16_t* const label = label_.data() + begin;
+        const float* const z = grid.z.data() + begin;
+        std::uint16_t* const out = nearness_.data() + begin;
         for (int x = 0; x < grid.inner_width; ++x) {
-            const auto k = static_cast<std::size_t>(begin + x);
-            const int label = label_[k];
-            if (label == 0) {
-                distance_[k] = 0;
-                continue;
-            }
-            const auto other = [&](std::size_t m) { return label_[m] != label && label_[m] != 0; };
-            const bool rim = (x > 0 && other(k - 1)) ||
-                             (x + 1 < grid.inner_width && other(k + 1)) ||
-                             (!top && other(k - static_cast<std::size_t>(w))) ||
-                             (!bottom && other(k + static_cast<std::size_t>(w)));
-            distance_[k] = rim ? kChamferUnit : kChamferFar;
+            const std::uint16_t own = label[x];
+            const auto ends = [&](std::ptrdiff_t o) {
+                const float step = std::abs(z[x + o] - z[x]);
+                return (label[x + o] != own) | ((step > kOcclusionMm) & (z[x + o] > 0.0F));
+            };
+            const bool rim = ends(-1) | ends(1) | ends(-w) | ends(w);
+            const std::uint16_t inside = rim ? kRim : std::uint16_t{0};
+            out[x] = own == 0 ? kNearnessMax : inside;
         }
     }
-    spread_distance(grid, {0, 0, grid.inner_width, grid.inner_height}, distance_);
+    spread(grid, box_, nearness_);
 }
 
 void Parts::mark_body(const Grid& grid, float thick_mm) {
-    std::fill(ball_.begin(), ball_.end(), -1);
+    std::fill(ball_.begin(), ball_.end(), std::uint16_t{0});
+    // A core's ball reaches its rim, and a little beyond.
     bool any = false;
-    for (int y = 0; y < grid.inner_height; ++y) {
-        const int begin = grid.index(0, y);
-        for (int i = begin; i < begin + grid.inner_width; ++i) {
+    const float margin = kBallMarginMm * kChamferUnit / grid.inverse_focal;
+    for (const Components::Run& run : components_.runs()) {
+        if (label_[static_cast<std::size_t>(run.begin)] == 0) {
+            continue;
+        }
+        for (int i = run.begin; i < run.end; ++i) {
             const auto k = static_cast<std::size_t>(i);
-            if (label_[k] != 0 && radius_mm(grid, i) > thick_mm) {
-                const float margin = kBallMarginMm / grid.pitch_mm(grid.z[k]);
-                ball_[k] = std::min(distance_[k], kChamferFar / 2) +
-                           static_cast<std::int32_t>(margin * static_cast<float>(kChamferUnit));
+            if (radius_mm(grid, i) > thick_mm) {
+                const int reach =
+                    kNearnessMax - nearness_[k] + static_cast<int>(margin / grid.z[k]);
+                ball_[k] = static_cast<std::uint16_t>(std::min<int>(reach, kNearnessMax));
+                has_core_[label_[k]] = 1;
                 any = true;
             }
         }
     }
-    if (!any) {
-        return;
+    if (any) {
+        spread(grid, box_, ball_, label_);
     }
-    spread_balls(grid, {0, 0, grid.inner_width, grid.inner_height}, label_, ball_);
 }
 
 void Parts::collect(const Grid& grid, float area_min_mm2) {
+    const auto same_kind = [&](int a, int b) {
+        const auto k = static_cast<std::size_t>(a);
+        const auto m = static_cast<std::size_t>(b);
+        return label_[k] == label_[m] && (ball_[k] > 0) == (ball_[m] > 0);
+    };
+    components_.find_in(grid, box_, std::span<const std::uint16_t>(label_), same_kind);
+    pieces_.assign(static_cast<std::size_t>(components_.count()), {});
+    for (const Components::Run& run : components_.runs()) {
+        Piece& piece = pieces_[static_cast<std::size_t>(run.component)];
+        piece.area_mm2 += grid.area_mm2(run.begin, run.end);
+        piece.pixels += run.end - run.begin;
+    }
+
     parts_.clear();
     bodies_.clear();
-    std::fill(part_of_.begin(), part_of_.end(), std::int16_t{-1});
-    constexpr std::int16_t kBodyMark = -2;
-    const int w = grid.width;
-    const std::array<int, 8> around = {-w - 1, -w, -w + 1, -1, 1, w - 1, w, w + 1};
-    int used = 0;
-
-    // Flood from a seed over pixels of the same surface and kind; their range in pixels_.
-    const auto flood = [&](int seed, bool body, std::int16_t mark) {
-        const int begin = used;
-        pixels_[static_cast<std::size_t>(used++)] = seed;
-        part_of_[static_cast<std::size_t>(seed)] = mark;
-        for (int next = begin; next < used; ++next) {
-            const int i = pixels_[static_cast<std::size_t>(next)];
-            for (const int o : around) {
-                const auto m = static_cast<std::size_t>(i + o);
-                if (label_[m] == label_[static_cast<std::size_t>(i)] && part_of_[m] == -1 &&
-                    (ball_[m] > 0) == body) {
-                    part_of_[m] = mark;
-                    pixels_[static_cast<std::size_t>(used++)] = i + o;
-                }
-            }
+    int room = 0;
+    int known = 0;
+    for (const Components::Run& run : components_.runs()) {
+        if (run.component < known) {
+            continue;
         }
-        return begin;
-    };
-
-    for (int y = 0; y < grid.inner_height; ++y) {
-        const int row = grid.index(0, y);
-        for (int i = row; i < row + grid.inner_width; ++i) {
-            const auto k = static_cast<std::size_t>(i);
-            if (label_[k] == 0 || part_of_[k] != -1) {
-                continue;
+        ++known;  // the first run of its component
+        Piece& piece = pieces_[static_cast<std::size_t>(run.component)];
+        const auto first = static_cast<std::size_t>(run.begin);
+        if (ball_[first] > 0) {
+            if (piece.area_mm2 >= kBodyCoreMinMm2 && bodies_.size() < std::size_t{kPartsMax}) {
+                bodies_.push_back({label_[first], piece.area_mm2, 0.0F, 0.0F});
+                measure_body(grid, run.component);
             }
-            const bool body = ball_[k] > 0;
-            const auto mark = body ? kBodyMark : static_cast<std::int16_t>(parts_.size());
-            const bool full = !body && parts_.size() >= static_cast<std::size_t>(kPartsMax);
-            const int begin = flood(i, body, full ? std::int16_t{-3} : mark);
+        } else if (piece.area_mm2 >= area_min_mm2 && parts_.size() < std::size_t{kPartsMax}) {
+            piece.number = static_cast<int>(parts_.size());
             Part part;
-            part.begin = begin;
-            part.end = used;
-            part.body = label_[k];
-            double depth = 0.0;
-            double depth_squares = 0.0;
-            Vec3f root = Vec3f::Zero();
-            for (int p = begin; p < used; ++p) {
-                const int q = pixels_[static_cast<std::size_t>(p)];
-                const float v = grid.z[static_cast<std::size_t>(q)];
-                const float pitch = grid.pitch_mm(v);
-                part.area_mm2 += pitch * pitch;
-                depth += v;
-                depth_squares += static_cast<double>(v) * v;
-                if (body) {
-                    continue;
-                }
-                part.thickest_mm = std::max(part.thickest_mm, radius_mm(grid, q));
-                const int x = grid.x_of(q);
-                const int yy = grid.y_of(q);
-                part.touches_border |=
-                    x == 0 || yy == 0 || x == grid.inner_width - 1 || yy == grid.inner_height - 1;
-                for (const int o : around) {
-                    const auto m = static_cast<std::size_t>(q + o);
-                    if (label_[m] == part.body && ball_[m] > 0) {
-                        root += grid.point(q);
-                        ++part.root_pixels;
-                        break;
-                    }
-                }
-            }
-            if (body) {
-                if (part.area_mm2 >= kBodyCoreMinMm2 &&
-                    bodies_.size() < static_cast<std::size_t>(kPartsMax)) {
-                    const double n = part.end - part.begin;
-                    const double mean = depth / n;
-                    const double sigma = std::sqrt(std::max(0.0, depth_squares / n - mean * mean));
-                    bodies_.push_back(
-                        {part.body, part.area_mm2, static_cast<float>(mean),
-                         static_cast<float>(mean - std::min(kFrontSigma * sigma, kFrontMaxMm))});
-                }
-                used = begin;
-            } else if (full || part.area_mm2 < area_min_mm2) {
-                for (int p = begin; p < used; ++p) {
-                    part_of_[static_cast<std::size_t>(pixels_[static_cast<std::size_t>(p)])] = -3;
-                }
-                used = begin;
-            } else {
-                if (part.root_pixels > 0) {
-                    part.root_mm = root / static_cast<float>(part.root_pixels);
-                }
-                parts_.push_back(part);
+            part.begin = part.end = room;
+            part.area_mm2 = piece.area_mm2;
+            part.body = label_[first];
+            parts_.push_back(part);
+            room += piece.pixels;
+        }
+    }
+    std::fill(part_of_.begin(), part_of_.end(), std::int8_t{kNone});
+    pixels_.resize(static_cast<std::size_t>(room));
+    for (const Components::Run& run : components_.runs()) {
+        const int number = pieces_[static_cast<std::size_t>(run.component)].number;
+        std::fill(part_of_.begin() + run.begin, part_of_.begin() + run.end,
+                  static_cast<std::int8_t>(number));
+        if (number >= 0) {
+            Part& part = parts_[static_cast<std::size_t>(number)];
+            const int y = grid.y_of(run.begin);
+            part.touches_border |= y == 0 || y == grid.inner_height - 1 ||
+                                   run.begin == grid.index(0, y) ||
+                                   run.end == grid.index(grid.inner_width, y);
+            for (int i = run.begin; i < run.end; ++i) {
+                pixels_[static_cast<std::size_t>(part.end++)] = i;
             }
         }
+    }
+    for (Part& part : parts_) {
+        measure(grid, part);
+    }
+}
+
+void Parts::measure_body(const Grid& grid, int component) {
+    double sum = 0.0;
+    double squares = 0.0;
+    double n = 0.0;
+    for (const Components::Run& run : components_.runs()) {
+        if (run.component != component) {
+            continue;
+        }
+        // A few pixels tell as much of a body as all do.
+        constexpr int kStep = 4;
+        for (int i = run.begin; i < run.end; i += kStep) {
+            const double z = grid.z[static_cast<std::size_t>(i)];
+            sum += z;
+            squares += z * z;
+            n += 1.0;
+        }
+    }
+    const double mean = sum / n;
+    const double sigma = std::sqrt(std::max(0.0, squares / n - mean * mean));
+    Body& body = bodies_.back();
+    body.depth_mm = static_cast<float>(mean);
+    body.front_mm = static_cast<float>(mean - std::min(kFrontSigma * sigma, kFrontMaxMm));
+}
+
+void Parts::measure(const Grid& grid, Part& part) {
+    const auto around = neighbours(grid.width);
+    const bool grows = has_core_[static_cast<std::size_t>(part.body)] != 0;
+    Vec3f root = Vec3f::Zero();
+    for (const int i : pixels(part)) {
+        part.thickest_mm = std::max(part.thickest_mm, radius_mm(grid, i));
+        if (!grows) {
+            continue;
+        }
+        for (const int o : around) {
+            const auto m = static_cast<std::size_t>(i + o);
+            if (label_[m] == part.body && ball_[m] > 0) {
+                root += grid.point(i);
+                ++part.root_pixels;
+                break;
+            }
+        }
+    }
+    if (part.root_pixels > 0) {
+        part.root_mm = root / static_cast<float>(part.root_pixels);
     }
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gestures/segment/chamfer.hpp"
+#include "gestures/segment/components.hpp"
 #include "gestures/segment/grid.hpp"
 
 namespace xtrack::segment {
@@ -47,16 +48,17 @@ class Parts {
     [[nodiscard]] std::span<const int> pixels(const Part& p) const noexcept {
         return {pixels_.data() + p.begin, static_cast<std::size_t>(p.end - p.begin)};
     }
-    /// Number of the part that a grid pixel belongs to, or -1.
+    /// Number of the part that a grid pixel belongs to; kNone or kOther, both negative.
     [[nodiscard]] int part_of(int i) const noexcept {
         return part_of_[static_cast<std::size_t>(i)];
     }
+    static constexpr int kNone = -1;   ///< background, no depth, a crumb
+    static constexpr int kOther = -2;  ///< a surface that is no part: a body, a small limb
+
     /// Radius of the largest circle round a pixel that stays on its surface, mm and grid px.
     /// The image's border does not end a surface.
     [[nodiscard]] float radius_px(int i) const noexcept {
-        return static_cast<float>(distance_[static_cast<std::size_t>(i)]) /
-                   static_cast<float>(kChamferUnit) -
-               0.5F;
+        return distance_px(nearness_[static_cast<std::size_t>(i)]) - 0.5F;
     }
     [[nodiscard]] float radius_mm(const Grid& grid, int i) const noexcept {
         return radius_px(i) * grid.pitch_mm(grid.z[static_cast<std::size_t>(i)]);
@@ -66,18 +68,29 @@ class Parts {
     static constexpr int kPartsMax = 32;
 
  private:
-    void label_surfaces(const Grid& grid, std::span<const float> foreground);
-    int root_of(int label) noexcept;
+    void label_surfaces(const Grid& grid, std::span<const float> foreground, float area_min_mm2);
+    void repeat_border(const Grid& grid);
     void measure_distance(const Grid& grid);
     void mark_body(const Grid& grid, float thick_mm);
     void collect(const Grid& grid, float area_min_mm2);
+    void measure_body(const Grid& grid, int component);
+    void measure(const Grid& grid, Part& part);
 
-    std::vector<int> label_;   ///< surface of a pixel, 0 = none
-    std::vector<int> parent_;  ///< union-find over labels
-    std::vector<float> area_;  ///< mm2, by label
-    std::vector<std::int32_t> distance_;
-    std::vector<std::int32_t> ball_;  ///< > 0: inside a ball of the thick core
-    std::vector<std::int16_t> part_of_;
+    /// What is known of a component before it is a part or a body.
+    struct Piece {
+        float area_mm2 = 0.0F;
+        int pixels = 0;
+        int number = kOther;  ///< of the part that it is
+    };
+
+    Components components_;
+    std::vector<Piece> pieces_;
+    std::vector<std::uint8_t> has_core_;   ///< by label: somewhere it is thick
+    Box box_;                              ///< of all surfaces
+    std::vector<std::uint16_t> label_;     ///< surface of a pixel, 0 = none
+    std::vector<std::uint16_t> nearness_;  ///< to the rim of the surface
+    std::vector<std::uint16_t> ball_;      ///< > 0: inside a ball of the thick core
+    std::vector<std::int8_t> part_of_;
     std::vector<int> pixels_;
     std::vector<Part> parts_;
     std::vector<Body> bodies_;

@@ -47,9 +47,10 @@ Rig RelativeScene::nominal_rig(Size image) {
 
 RelativeScene::RelativeScene(Size image, double background_mm, double mm_per_px)
     : background_mm_(background_mm), mm_per_px_(mm_per_px), focal_px_(image.width) {
-    grid_.create(nominal_rig(image), image);
+    const int scale = Grid::fine_scale(image);
+    grid_.create(nominal_rig(image), image, scale, scale);
     heights_.reserve(grid_.size());
-    distance_.assign(grid_.size(), 0);
+    nearness_.assign(grid_.size(), kNearnessMax);
     depth_.depth = Image<std::uint16_t>(image.width, image.height, 0);
     depth_.quality = Image<std::uint8_t>(image.width, image.height, 0);
 }
@@ -58,7 +59,7 @@ bool RelativeScene::measure(const Image<std::uint16_t>& component, int moving_id
     palm_radius_px_ = 0.0;
     const auto high = static_cast<float>(background_mm_ - mm_per_px_ * kForeground_px);
     heights_.clear();
-    std::fill(distance_.begin(), distance_.end(), 0);
+    std::fill(nearness_.begin(), nearness_.end(), kNearnessMax);
     for (int y = 0; y < grid_.inner_height; ++y) {
         const std::uint16_t* ids = component.row(y * grid_.scale + grid_.scale / 2);
         for (int x = 0; x < grid_.inner_width; ++x) {
@@ -67,7 +68,7 @@ bool RelativeScene::measure(const Image<std::uint16_t>& component, int moving_id
             const bool counts = moving_ids < 0 || (id > 0 && id <= moving_ids);
             if (counts && grid_.z[i] > 0.0F && grid_.z[i] < high) {
                 heights_.push_back(static_cast<float>(height_px(static_cast<double>(grid_.z[i]))));
-                distance_[i] = kChamferFar;
+                nearness_[i] = 0;
             }
         }
     }
@@ -80,17 +81,17 @@ bool RelativeScene::measure(const Image<std::uint16_t>& component, int moving_id
     const auto near =
         static_cast<float>(background_mm_ - mm_per_px_ * kNearShare * static_cast<double>(*top));
     for (std::size_t i = 0; i < grid_.size(); ++i) {
-        distance_[i] = grid_.z[i] <= near ? distance_[i] : 0;
+        nearness_[i] = grid_.z[i] <= near ? nearness_[i] : kNearnessMax;
     }
-    spread_distance(grid_, {0, 0, grid_.inner_width, grid_.inner_height}, distance_);
-    const auto centre = std::max_element(distance_.begin(), distance_.end());
-    const double radius_px = grid_.scale * static_cast<double>(*centre) / kChamferUnit;
+    spread(grid_, grid_.whole(), nearness_);
+    const auto centre = std::min_element(nearness_.begin(), nearness_.end());
+    const double radius_px = grid_.scale * static_cast<double>(distance_px(*centre));
     if (radius_px < kLeastRadius_px) {
         return false;
     }
     palm_radius_px_ = radius_px;
     palm_height_px_ = height_px(
-        static_cast<double>(grid_.z[static_cast<std::size_t>(centre - distance_.begin())]));
+        static_cast<double>(grid_.z[static_cast<std::size_t>(centre - nearness_.begin())]));
     return true;
 }
 

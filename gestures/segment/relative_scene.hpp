@@ -74,7 +74,7 @@ class RelativeScene {
     double focal_px_;
     Grid grid_;
     std::vector<float> heights_;
-    std::vector<std::int32_t> distance_;
+    std::vector<std::uint16_t> nearness_;  ///< to what is no palm
     DepthFrame depth_;
     double palm_radius_px_ = 0.0;
     double palm_height_px_ = 0.0;

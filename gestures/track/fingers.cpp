@@ -27,6 +27,8 @@ constexpr float kRingNearRadii = 0.9F;
 constexpr float kRingFarRadii = 2.3F;
 /// The outline this near to the wrist's cut is the cut, grid px.
 constexpr float kCutPixels = 2.5F;
+/// What points closer to the arm is none of the fingers: cosine of the angle between them.
+constexpr float kArmCone = 0.6F;
 /// No finger points this far toward the arm: cosine of the angle between them.
 constexpr float kArmSide = 0.2F;
 constexpr int kSmoothRounds = 2;
@@ -50,8 +52,8 @@ void FingerReader::create(const segment::Grid& grid) {
     points_.reserve(n);
     distance_.reserve(n);
     scratch_.reserve(n);
-    outside_.assign(n, 0);
-    queue_.reserve(n);
+    gaps_.create(grid);
+    holes_.reserve(n);
 }
 
 void FingerReader::read(const segment::Grid& grid, std::span<const std::uint8_t> labels,
@@ -76,7 +78,10 @@ void FingerReader::read(const segment::Grid& grid, std::span<const std::uint8_t>
                 continue;
             }
             const Vec3f d = grid.point(i) - region.palm_mm;
-            if (d.norm() > beyond && d.dot(region.arm_direction) < 0.6F * d.norm()) {
+            const float squared = d.squaredNorm();
+            const float along = d.dot(region.arm_direction);
+            if (squared > beyond * beyond &&
+                (along < 0.0F || along * along < kArmCone * kArmCone * squared)) {
                 const float pitch = grid.pitch_mm(grid.z[static_cast<std::size_t>(i)]);
                 out.finger_area_mm2 += pitch * pitch;
             }
@@ -144,8 +149,12 @@ void FingerReader::measure_profile(const segment::Grid& grid, std::span<const st
 void FingerReader::find_tips(const HandRegion& region, float tip_prominence_mm,
                              FingerReading& out) const {
     const auto n = static_cast<int>(distance_.size());
-    const auto at = [&](int k) { return distance_[static_cast<std::size_t>(((k % n) + n) % n)]; };
-    const auto point = [&](int k) { return points_[static_cast<std::size_t>(((k % n) + n) % n)]; };
+    // Never farther than once round from either end.
+    const auto wrapped = [n](int k) {
+        return static_cast<std::size_t>(k < 0 ? k + n : (k >= n ? k - n : k));
+    };
+    const auto at = [&](int k) { return distance_[wrapped(k)]; };
+    const auto point = [&](int k) { return points_[wrapped(k)]; };
     const float least = kTipRadii * region.palm_radius_mm;
     for (int k = 0; k < n; ++k) {
         const float d = at(k);
@@ -217,61 +226,47 @@ float FingerReading::reach_toward(const Vec3f& from_palm) const {
 
 void FingerReader::find_ring(const segment::Grid& grid, std::span<const std::uint8_t> labels,
                              const HandRegion& region, FingerReading& out) {
-    // Background that cannot be reached from outside the box is a hole.
-    const int w = grid.width;
-    const int x0 = region.x_begin - 1;
-    const int y0 = region.y_begin - 1;
-    const int x1 = region.x_end;
-    const int y1 = region.y_end;
-    for (int y = y0; y <= y1; ++y) {
-        std::fill_n(outside_.begin() + grid.index(x0, y), x1 - x0 + 1, std::uint8_t{0});
+    // What is not hand and cannot be reached from the corner of a box round it is a hole.
+    const segment::Box box{region.x_begin - 1, region.y_begin - 1, region.x_end + 1,
+                           region.y_end + 1};
+    const auto gap = [&](int i) { return labels[static_cast<std::size_t>(i)] != region.label; };
+    gaps_.find(
+        grid, box,
+        [&](int i, int end) {
+            while (i < end && !gap(i)) {
+                ++i;
+            }
+            return i;
+        },
+        [&](int a, int b) { return (a == b + 1 || a == b + grid.width) && gap(a) && gap(b); });
+    constexpr int kOutside = 0;
+    if (gaps_.count() == 1) {
+        return;
     }
-    const auto flood = [&](int seed) {
-        queue_.clear();
-        queue_.push_back(seed);
-        outside_[static_cast<std::size_t>(seed)] = 1;
-        for (std::size_t next = 0; next < queue_.size(); ++next) {
-            const int i = queue_[next];
-            const int x = grid.x_of(i);
-            const int y = grid.y_of(i);
-            const auto visit = [&](int m, bool in_box) {
-                const auto k = static_cast<std::size_t>(m);
-                if (in_box && outside_[k] == 0 && labels[k] != region.label) {
-                    outside_[k] = 1;
-                    queue_.push_back(m);
-                }
-            };
-            visit(i - 1, x > x0);
-            visit(i + 1, x < x1);
-            visit(i - w, y > y0);
-            visit(i + w, y < y1);
+    holes_.assign(static_cast<std::size_t>(gaps_.count()), {});
+    for (const segment::Components::Run& run : gaps_.runs()) {
+        if (run.component == kOutside) {
+            continue;
         }
-    };
-    flood(grid.index(x0, y0));
+        Hole& hole = holes_[static_cast<std::size_t>(run.component)];
+        const auto n = static_cast<float>(run.end - run.begin);
+        hole.pixels += n;
+        hole.sum_px += n * Vec2f(static_cast<float>(grid.x_of(run.begin)) + 0.5F * (n - 1.0F),
+                                 static_cast<float>(grid.y_of(run.begin)));
+    }
+    const float pitch = grid.pitch_mm(region.palm_mm.z());
     float best_area = 0.0F;
     Vec2f best = Vec2f::Zero();
-    for (int y = y0; y <= y1; ++y) {
-        for (int x = x0; x <= x1; ++x) {
-            const auto k = static_cast<std::size_t>(grid.index(x, y));
-            if (outside_[k] != 0 || labels[k] == region.label) {
-                continue;
-            }
-            flood(static_cast<int>(k));
-            const float pitch = grid.pitch_mm(region.palm_mm.z());
-            const float area = static_cast<float>(queue_.size()) * pitch * pitch;
-            if (area < kRingAreaMinMm2 || area > kRingAreaMaxMm2 || area <= best_area) {
-                continue;
-            }
-            Vec2f centre = Vec2f::Zero();
-            for (const int i : queue_) {
-                centre += Vec2f(static_cast<float>(grid.x_of(i)), static_cast<float>(grid.y_of(i)));
-            }
-            centre /= static_cast<float>(queue_.size());
-            const float radii = (centre - region.palm_px).norm() / region.palm_radius_px;
-            if (radii > kRingNearRadii && radii < kRingFarRadii) {
-                best_area = area;
-                best = centre;
-            }
+    for (std::size_t k = 1; k < holes_.size(); ++k) {
+        const float area = holes_[k].pixels * pitch * pitch;
+        if (area < kRingAreaMinMm2 || area > kRingAreaMaxMm2 || area <= best_area) {
+            continue;
+        }
+        const Vec2f centre = holes_[k].sum_px / holes_[k].pixels;
+        const float radii = (centre - region.palm_px).norm() / region.palm_radius_px;
+        if (radii > kRingNearRadii && radii < kRingFarRadii) {
+            best_area = area;
+            best = centre;
         }
     }
     if (best_area <= 0.0F) {

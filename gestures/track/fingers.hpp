@@ -9,6 +9,7 @@
 #include <xtrack/hand.hpp>
 #include <xtrack/hand_region.hpp>
 
+#include "gestures/segment/components.hpp"
 #include "gestures/segment/grid.hpp"
 #include "gestures/track/contour.hpp"
 
@@ -76,8 +77,12 @@ class FingerReader {
     std::vector<Vec3f> points_;    ///< of the contour, with the depth of the skin beside them
     std::vector<float> distance_;  ///< from the palm, smoothed; 0 on the wrist's cut
     std::vector<float> scratch_;
-    std::vector<std::uint8_t> outside_;
-    std::vector<int> queue_;
+    struct Hole {
+        float pixels = 0.0F;
+        Vec2f sum_px = Vec2f::Zero();
+    };
+    segment::Components gaps_;  ///< what is not hand in a box round it
+    std::vector<Hole> holes_;   ///< by component of gaps_
 };
 
 /// Says which tip is which finger: the thumb by its gap and length, the others in order from it.

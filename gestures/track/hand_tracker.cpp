@@ -22,6 +22,10 @@ constexpr Size kSizeMax{1920, 1200};
 /// A hand is looked for near its prediction while it has been away no longer than this: then only
 /// its looks count.
 constexpr Duration kPriorAge = std::chrono::milliseconds{120};
+/// How far a palm may be from its prediction: what it jumps over at once, and by how much more a
+/// second unseen. What is farther is another hand, or the hand of what was taken for one.
+constexpr float kJumpMm = 70.0F;
+constexpr float kJumpMmps = 600.0F;
 
 struct Number {
     const char* name;
@@ -69,9 +73,9 @@ struct HandTracker::State {
 void HandTracker::State::match(Stamp stamp, std::span<const HandRegion> regions,
                                std::array<track::HandTrack*, kMaxHands>& of_region) {
     of_region.fill(nullptr);
-    const auto limit = static_cast<float>(settings.reacquire_distance_mm);
+    const auto farthest = static_cast<float>(settings.reacquire_distance_mm);
     for (std::size_t round = 0; round < regions.size(); ++round) {
-        float best = limit;
+        float best = 1.0F;  // share of what is allowed
         track::HandTrack* track = nullptr;
         std::size_t region = 0;
         for (track::HandTrack& t : tracks) {
@@ -79,8 +83,10 @@ void HandTracker::State::match(Stamp stamp, std::span<const HandRegion> regions,
                 std::find(of_region.begin(), of_region.end(), &t) != of_region.end()) {
                 continue;
             }
+            const auto unseen_s = static_cast<float>(to_seconds(stamp - t.last_seen()));
+            const float limit = std::min(farthest, kJumpMm + kJumpMmps * unseen_s);
             for (std::size_t k = 0; k < regions.size(); ++k) {
-                const float d = (t.predict(stamp) - regions[k].palm_mm).norm();
+                const float d = (t.predict(stamp) - regions[k].palm_mm).norm() / limit;
                 if (of_region[k] == nullptr && d <= best) {
                     best = d;
                     track = &t;

@@ -12,6 +12,8 @@ namespace {
 
 constexpr float kDiscRadii = 0.9F;
 constexpr int kSkinMin = 12;
+/// So many of the pixels along a radius say what all of them do.
+constexpr float kSamplesAcross = 8.0F;
 /// Second fit: skin farther than this from the first plane is a finger folded over it, mm.
 constexpr float kOutlierMm = 12.0F;
 
@@ -26,14 +28,16 @@ Plane fit(const segment::Grid& grid, std::span<const std::uint8_t> labels, const
           Keep&& keep) {
     const float disc = kDiscRadii * region.palm_radius_px;
     const int reach = static_cast<int>(disc);
+    const int step = std::max(1, static_cast<int>(disc / kSamplesAcross));
     const int cx = static_cast<int>(std::lround(region.palm_px.x()));
     const int cy = static_cast<int>(std::lround(region.palm_px.y()));
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
     int n = 0;
-    for (int y = std::max(0, cy - reach); y <= std::min(grid.inner_height - 1, cy + reach); ++y) {
+    for (int y = std::max(0, cy - reach); y <= std::min(grid.inner_height - 1, cy + reach);
+         y += step) {
         for (int x = std::max(0, cx - reach); x <= std::min(grid.inner_width - 1, cx + reach);
-             ++x) {
+             x += step) {
             const int i = grid.index(x, y);
             const auto dx = static_cast<float>(x - cx);
             const auto dy = static_cast<float>(y - cy);

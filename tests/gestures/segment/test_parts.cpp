@@ -18,7 +18,7 @@ struct Cut {
     Parts parts;
 
     explicit Cut(Size size = {640, 480}) : scene(size) {
-        grid.create(scene.rig, size);
+        grid.create(scene.rig, size, Grid::fine_scale(size), Grid::fine_scale(size));
         parts.create(grid);
     }
     void run() {
