@@ -31,7 +31,9 @@ const char* Silence::name(Event e) {
 
 void Silence::update(const Context& c, bool active) {
     const GestureSettings& s = c.settings;
-    const bool means_something = s.grab || s.fist || s.two_hand_zoom || s.two_hand_rotate;
+    // A thumb is shown on a fist.
+    const bool means_something =
+        s.grab || s.fist || s.two_hand_zoom || s.two_hand_rotate || s.thumb_up || s.thumb_down;
     const auto grab = static_cast<double>(c.hand.grab_value);
     // Open again at less than what closes, so that a half-closed hand does not flicker.
     const double limit = state() == State::open ? s.silence_fist : s.silence_open;

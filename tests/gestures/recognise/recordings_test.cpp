@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Joint recordings of public data sets, kept beside the project (../shared/data).
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 
 const fs::path kJoints = fs::path(XTRACK_SHARED_DATA) / "hands" / "joints";
 
-void score(const fs::path& folder, GestureScorer& scorer) {
+void score(const fs::path& folder, GestureScorer& scorer, const GestureSettings& settings) {
     const auto frames = read_joint_recording(folder / "joints.csv");
     ASSERT_TRUE(frames.ok()) << frames.error().message;
     std::vector<GestureLabel> labels;
@@ -28,7 +29,7 @@ void score(const fs::path& folder, GestureScorer& scorer) {
         ASSERT_TRUE(read.ok()) << read.error().message;
         labels = *read;
     }
-    auto recogniser = GestureRecogniser::create();
+    auto recogniser = GestureRecogniser::create(settings);
     recogniser->set_trace([](const RecogniserTrace& line) {
         EXPECT_FALSE(line.impossible) << line.machine << " " << line.from << " " << line.event;
     });
@@ -44,14 +45,15 @@ void score(const fs::path& folder, GestureScorer& scorer) {
     scorer.add(events, labels, frames->back().stamp - frames->front().stamp);
 }
 
-int score_all(const std::string& prefix, GestureScorer& scorer) {
+int score_all(const std::string& prefix, GestureScorer& scorer,
+              const GestureSettings& settings = {}) {
     int recordings = 0;
     if (!fs::is_directory(kJoints)) {
         return 0;
     }
     for (const auto& entry : fs::directory_iterator(kJoints)) {
         if (entry.path().filename().string().starts_with(prefix)) {
-            score(entry.path(), scorer);
+            score(entry.path(), scorer, settings);
             ++recordings;
         }
     }
@@ -60,8 +62,10 @@ int score_all(const std::string& prefix, GestureScorer& scorer) {
 
 // Bounds, not figures: worse than that is a regression. docs/gestures/ has the figures.
 TEST(JointRecordings, SwipesAndPinchesAreFound) {
-    GestureScorer scorer;
-    if (score_all("sfinge-", scorer) == 0) {
+    GestureSettings settings;
+    settings.grab = settings.tap = settings.circle = settings.pull = false;
+    GestureScorer scorer(settings);
+    if (score_all("sfinge-", scorer, settings) == 0) {
         GTEST_SKIP() << "no recordings at " << kJoints;
     }
     const GestureScore all = scorer.all();
@@ -72,6 +76,72 @@ TEST(JointRecordings, SwipesAndPinchesAreFound) {
     EXPECT_GE(scorer.gestures().at("swipe_right").detection().value, 0.70);
     EXPECT_LE(percentile(all.from_onset_ms, 0.95), 700.0);
     EXPECT_EQ(all.wrong_hand, 0);
+}
+
+TEST(JointRecordings, GrabsTapsAndCirclesAreFoundBesideThem) {
+    GestureScorer scorer;
+    if (score_all("sfinge-", scorer) == 0) {
+        GTEST_SKIP() << "no recordings at " << kJoints;
+    }
+    for (const char* gesture : {"grab", "tap", "circle", "pinch", "swipe_left"}) {
+        const GestureScore& score = scorer.gestures().at(gesture);
+        EXPECT_GE(score.detection().value, 0.80) << gesture;
+        EXPECT_LE(score.false_per_label().value, 0.30) << gesture;
+    }
+    EXPECT_LE(scorer.all().false_per_label().value, 0.15);
+    EXPECT_EQ(scorer.all().wrong_hand, 0);
+}
+
+TEST(JointRecordings, VictoriesAreTwosAndThumbsUpAreOnes) {
+    GestureSettings settings;
+    for (const GestureField& field : gesture_fields()) {
+        if (field.is_switch) {
+            field.set(settings, 0.0);
+        }
+    }
+    settings.victory = settings.thumb_up = true;
+    int twos = 0;
+    int ones = 0;
+    for (int i = 1; i <= 71; i += 2) {
+        const std::string number = std::to_string(i);
+        const fs::path folder =
+            kJoints / ("sfinge-" + std::string(3 - number.size(), '0') + number);
+        if (!fs::exists(folder)) {
+            GTEST_SKIP() << "no recordings at " << kJoints;
+        }
+        const auto frames = read_joint_recording(folder / "joints.csv");
+        const auto labels = read_labels(folder / "labels.csv");
+        ASSERT_TRUE(frames.ok() && labels.ok());
+        auto recogniser = GestureRecogniser::create(settings);
+        HandFromJoints reader;
+        for (HandFrame frame : *frames) {
+            reader.complete(frame);
+            for (const GestureEvent& e : recogniser->push(frame)) {
+                if (e.type == GestureType::hand || e.phase != EventPhase::begin) {
+                    continue;
+                }
+                const std::string wanted = e.type == GestureType::victory ? "x_two" : "x_one";
+                const bool right =
+                    std::any_of(labels->begin(), labels->end(), [&](const GestureLabel& label) {
+                        return label.gesture == wanted && label.start <= e.sensor &&
+                               e.sensor <= label.end;
+                    });
+                EXPECT_TRUE(right) << folder << " " << to_string(e.type) << " " << e.sensor.us();
+                (e.type == GestureType::victory ? twos : ones) += right ? 1 : 0;
+            }
+        }
+    }
+    EXPECT_GE(twos, 11);  // of 12
+    EXPECT_GE(ones, 7);   // of 11
+}
+
+TEST(JointRecordings, GrabsOfAnotherTracker) {
+    GestureScorer scorer;
+    if (score_all("leap-grab", scorer) == 0) {
+        GTEST_SKIP() << "no recordings at " << kJoints;
+    }
+    EXPECT_EQ(scorer.gestures().at("grab").stray, 2);  // it has two, and no labels to match
+    EXPECT_EQ(scorer.all().stray, 2);
 }
 
 TEST(JointRecordings, IdleHandsStayQuiet) {

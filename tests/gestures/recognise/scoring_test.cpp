@@ -131,7 +131,9 @@ TEST(Scorer, ALabelWithoutADirectionMatchesAny) {
 }
 
 TEST(Scorer, LabelsOfOtherGesturesAskForNothing) {
-    GestureScorer scorer;
+    GestureSettings settings;
+    settings.circle = settings.grab = false;
+    GestureScorer scorer(settings);
     scorer.add({}, std::vector{label("circle", 1, 2), label("grab", 3, 4), label("x_one", 5, 6)},
                kLength);
     EXPECT_EQ(scorer.all().labelled, 0);

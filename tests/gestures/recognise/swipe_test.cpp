@@ -186,7 +186,14 @@ TEST(Swipe, APointingFingerDrawsCircles) {
         const double ms = i == 0 ? 0.0 : 800.0 + 40.0 * i;
         actor.moments.push_back({ms, at(110 * std::cos(rad), 110 * std::sin(rad))});
     }
-    EXPECT_THAT(story_of(actor), IsEmpty());
+    GestureSettings settings;
+    settings.circle = false;
+    Stage stage(settings);
+    stage.play(actor, 60);
+    EXPECT_THAT(stage.story(), IsEmpty());
+    // Where circles are asked for it is one, the second turn just not complete, and no swipe
+    // either.
+    EXPECT_THAT(story_of(actor), ElementsAre("circle_counterclockwise"));
 }
 
 TEST(Swipe, APalmThatLeadsMaySwipeSlowly) {
