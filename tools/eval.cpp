@@ -176,7 +176,7 @@ void add_eval(CLI::App& app, int& exit_status) {
     const auto options = std::make_shared<EvalOptions>();
     command->add_option("REC", options->recordings, "Folders of recordings")->required();
     command->add_option("--gestures", options->gestures,
-                        "Comma-separated list of what is recognised (default: all)");
+                        "Comma-separated list of what is recognised (default: as run)");
     add_gesture_settings_option(*command, options->changes);
     command
         ->add_option("--sweep", options->sweep,

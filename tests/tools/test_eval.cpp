@@ -22,9 +22,9 @@ using testing::HasSubstr;
 const std::string kSwipe = XTRACK_TEST_DATA "/sim-swipe";
 
 /// The swipe of sim-swipe under other labels: `found`, `missed`, `unlabelled`.
-class Eval : public testing::Test {
+class EvalRecordings : public testing::Test {
  protected:
-    Eval() {
+    EvalRecordings() {
         for (const char* name : {"found", "missed", "unlabelled"}) {
             fs::create_directory(folder_.path() / name);
             for (const auto& part : fs::directory_iterator(kSwipe)) {
@@ -52,7 +52,7 @@ class Eval : public testing::Test {
     TemporaryFolder folder_;
 };
 
-TEST_F(Eval, SaysWhatBecameOfEachRecording) {
+TEST_F(EvalRecordings, SaysWhatBecameOfEachRecording) {
     const json all = figures({at("found"), at("missed"), at("unlabelled")});
     ASSERT_EQ(all["recordings"].size(), 3U);
     const json& found = all["recordings"][0]["score"];
@@ -77,14 +77,14 @@ TEST_F(Eval, SaysWhatBecameOfEachRecording) {
     EXPECT_NEAR(all["unlabelled"]["per_hour"]["value"], 3600.0 / 1.0, 400.0);
 }
 
-TEST_F(Eval, PrintsARowARecording) {
+TEST_F(EvalRecordings, PrintsARowARecording) {
     const Outcome outcome = xtrack_command({"eval", at("found"), at("missed")});
     EXPECT_EQ(outcome.status, 0);
     EXPECT_THAT(outcome.out, testing::ContainsRegex("found +1\\.0 +1/1 +0 +0 +0 +1\\.00 +29 / 29"));
     EXPECT_THAT(outcome.out, testing::ContainsRegex("missed +1\\.0 +0/1 +1 +0 +0 +0\\.00 +-"));
 }
 
-TEST_F(Eval, KeepsTheFiguresOfTheOthersWhereOneIsTorn) {
+TEST_F(EvalRecordings, KeepsTheFiguresOfTheOthersWhereOneIsTorn) {
     set_text(folder_.path() / "missed" / "labels.csv", "gesture,hand,start_us,end_us\nswipe\n");
     const Outcome outcome = xtrack_command({"eval", at("missed"), at("found"), "--json"});
     EXPECT_EQ(outcome.status, 1);
@@ -101,7 +101,7 @@ TEST_F(Eval, KeepsTheFiguresOfTheOthersWhereOneIsTorn) {
     EXPECT_EQ(none.out, "");
 }
 
-TEST_F(Eval, RecognisesWhatASessionDoes) {
+TEST_F(EvalRecordings, RecognisesWhatASessionDoes) {
     for (const char* source : {"found", "unlabelled"}) {
         SessionOptions options;
         auto session = Session::open(at(source), options);
@@ -122,7 +122,7 @@ TEST_F(Eval, RecognisesWhatASessionDoes) {
     }
 }
 
-TEST_F(Eval, SweepsASetting) {
+TEST_F(EvalRecordings, SweepsASetting) {
     const json all = figures({at("found"), at("unlabelled"), "--sweep",
                               "swipe_speed_mmps=300:900:3", "--gestures", "swipe"});
     EXPECT_EQ(all["setting"], "swipe_speed_mmps");
@@ -142,7 +142,7 @@ TEST_F(Eval, SweepsASetting) {
     EXPECT_THAT(table.out, testing::ContainsRegex("\n +300 +1/1 +1\\.00 .*\n +900 +0/1 +0\\.00 "));
 }
 
-TEST_F(Eval, RefusesASweepThatIsNone) {
+TEST_F(EvalRecordings, RefusesASweepThatIsNone) {
     const auto refused = [&](const std::string& sweep, const char* why) {
         const Outcome outcome = xtrack_command({"eval", at("found"), "--sweep", sweep});
         EXPECT_EQ(outcome.status, 2) << sweep;
@@ -179,7 +179,7 @@ const cv::Vec3b kGreen(64, 148, 44);
 const cv::Vec3b kRed(44, 44, 212);
 const cv::Vec3b kOrange(0, 120, 235);
 
-TEST_F(Eval, DrawsWhatBecameOfLabelsAndEvents) {
+TEST_F(EvalRecordings, DrawsWhatBecameOfLabelsAndEvents) {
     const Outcome outcome =
         xtrack_command({"eval", at("found"), at("missed"), "--timeline", at("pictures")});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -197,7 +197,7 @@ TEST_F(Eval, DrawsWhatBecameOfLabelsAndEvents) {
     EXPECT_TRUE(fs::exists(at("twice/found-2.png")));
 }
 
-TEST_F(Eval, SaysWhereATimelineCannotBeDrawn) {
+TEST_F(EvalRecordings, SaysWhereATimelineCannotBeDrawn) {
     const Outcome several =
         xtrack_command({"eval", at("found"), at("missed"), "--timeline", at("one.png")});
     EXPECT_EQ(several.status, 2);
@@ -232,7 +232,7 @@ TEST(Timeline, GrowsWithWhatIsCloseTogether) {
     EXPECT_LT(tools::timeline_picture(r).rows, 60 * 200);
 }
 
-TEST_F(Eval, CountsFingersOfStills) {
+TEST_F(EvalRecordings, CountsFingersOfStills) {
     const std::string stills = at("stills");
     ASSERT_EQ(xtrack_command({"record", kSwipe, "--out", stills, "--what", "depth", "--fast",
                               "--events", "none"})

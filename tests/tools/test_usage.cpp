@@ -78,13 +78,15 @@ TEST_P(Help, IsOnStdoutAndNamesTheOptions) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, Help,
-                         testing::Values("run", "replay", "eval", "demo", "decode", "bench"),
+                         testing::Values("run", "replay", "record", "eval", "demo", "decode",
+                                         "bench"),
                          [](const auto& each) { return std::string(each.param); });
 
 TEST(Usage, HelpOfTheCommandNamesEverySubcommand) {
     const Outcome outcome = xtrack_command({"--help"});
     EXPECT_EQ(outcome.status, 0);
-    for (const char* name : {"run", "replay", "eval", "demo", "decode", "calibrate", "bench"}) {
+    for (const char* name :
+         {"run", "replay", "record", "eval", "demo", "decode", "calibrate", "bench"}) {
         EXPECT_THAT(outcome.out, HasSubstr(std::string("\n  ") + name + " "));
     }
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/record/recorder.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -113,15 +112,6 @@ Result<void> Recorder::add_joints(const HandFrame& hands) {
                                  (setup_.out / kJointsFile).string(), kMaxJointMoments)};
     }
     HandFrame frame = hands;
-    frame.count = 0;
-    for (const Hand& hand : hands.all()) {
-        const auto kept = frame.all();
-        // Readers refuse one id twice in a moment; the better seen comes first.
-        if (std::none_of(kept.begin(), kept.end(),
-                         [&](const Hand& other) { return other.id == hand.id; })) {
-            frame.hands[frame.count++] = hand;
-        }
-    }
     for (Hand& hand : frame.all()) {
         if (!hand.articulated) {
             fill_joints(hand);
@@ -149,7 +139,9 @@ Result<void> Recorder::add(const PipelineView& view) {
             }
             break;
         case RecordWhat::joints:
-            if (view.interaction_hands != nullptr) {
+            // Equal stamps are one moment in joints.csv, and to trackers: they skip the second.
+            if (view.interaction_hands != nullptr &&
+                (count_ == 0 || view.interaction_hands->stamp != last_)) {
                 stamp = view.interaction_hands->stamp;
                 added = add_joints(*view.interaction_hands);
             }

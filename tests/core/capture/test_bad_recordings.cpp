@@ -218,6 +218,14 @@ constexpr BadList kBadLists[] = {
     {"NoPatternNamed",
      "file,t_us,sequence,pattern\nframes/000000.png,0,0,\nframes/000001.png,1,1,\n",
      "pattern is empty in every row"},
+    {"CleanRowsHalf", "file,t_us,sequence,pattern,clean_begin\nframes/000000.png,0,0,0,1\n",
+     "column 'clean_end'"},
+    {"CleanRowsSwapped",
+     "file,t_us,sequence,pattern,clean_begin,clean_end\nframes/000000.png,0,0,0,5,4\n",
+     "line 2: clean_end is '4'; give a whole number from 6 to"},
+    {"CleanRowsOutside",
+     "file,t_us,sequence,pattern,clean_begin,clean_end\nframes/000000.png,0,0,0,5,13\n",
+     "clean_end of frames/000000.png is 13, the images have 12 rows"},
     {"NoFile", "file,t_us,sequence,pattern\n,0,0,0\n", "line 2: file is empty"},
 };
 

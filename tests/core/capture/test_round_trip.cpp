@@ -175,6 +175,35 @@ TEST_F(RoundTrip, WriterLeavesNothingUnlessItIsClosed) {
     EXPECT_TRUE(fs::is_empty(folder_));
 }
 
+TEST_F(RoundTrip, RowsThatSawOnePatternComeBack) {
+    const auto patterns = three_step_sequence(Axis::x, {64, 48}, 16.0);
+    auto writer = RecordingWriter::create(folder_ / "rec", {{}, patterns});
+    ASSERT_TRUE(writer.ok()) << writer.error().message;
+    struct Rows {
+        int begin, end;              // given
+        int begin_again, end_again;  // read back; an image has twelve
+    };
+    const Rows all[] = {{3, 12, 3, 12}, {0, 7, 0, 7}, {0, 12, 0, 12}, {0, 0, 0, 12}};
+    int number = 0;
+    for (const Rows& rows : all) {
+        Frame frame = small_frame(number++, 0);
+        frame.clean_row_begin = rows.begin;
+        frame.clean_row_end = rows.end;
+        ASSERT_TRUE(writer->add(frame).ok());
+    }
+    ASSERT_TRUE(writer->close().ok());
+    EXPECT_NE(text_of(folder_ / "rec" / "frames.csv").find("000000.png,0,0,0,3,12\n"),
+              std::string::npos);
+    const auto reader = RecordingReader::open(folder_ / "rec");
+    ASSERT_TRUE(reader.ok()) << reader.error().message;
+    Frame frame;
+    for (std::size_t i = 0; i < std::size(all); ++i) {
+        ASSERT_TRUE(reader->read_frame(i, frame).ok());
+        EXPECT_EQ(frame.clean_row_begin, all[i].begin_again) << i;
+        EXPECT_EQ(frame.clean_row_end, all[i].end_again) << i;
+    }
+}
+
 // As a program that is killed leaves it.
 TEST_F(RoundTrip, WhatIsNotClosedYetCanBeReadWhereItIs) {
     const auto patterns = three_step_sequence(Axis::x, {64, 48}, 16.0);

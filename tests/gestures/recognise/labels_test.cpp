@@ -155,5 +155,18 @@ TEST(HandTruth, TimeMustNotGoBack) {
     EXPECT_THAT(back.error().message, HasSubstr("h.csv line 3: t_us is '4'; time goes backwards"));
 }
 
+TEST(LabelOf, IsAKnownGestureAndAHand) {
+    const auto label = label_of("swipe_left", "right");
+    ASSERT_TRUE(label.ok()) << label.error().message;
+    EXPECT_EQ(label->gesture, "swipe_left");
+    EXPECT_EQ(label->hand, Chirality::right);
+    EXPECT_EQ(label_of("x_nod", "unknown")->hand, Chirality::unknown);
+    EXPECT_EQ(label_of("swpe", "left").error().code, ErrorCode::invalid_argument);
+    EXPECT_NE(label_of("swpe", "left").error().message.find("'swpe'; give swipe"),
+              std::string::npos);
+    EXPECT_NE(label_of("swipe", "both").error().message.find("'both'; give left"),
+              std::string::npos);
+}
+
 }  // namespace
 }  // namespace xtrack
