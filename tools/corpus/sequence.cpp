@@ -160,11 +160,11 @@ Sequence perform_all(const std::vector<std::string>& names, const Person& who, i
     shuffle(order, random);
     const bool both = std::any_of(names.begin(), names.end(), takes_two_hands);
     Movement& right = add_hand(s, person, both ? SimHand::right : person.hand, false);
-    Performer performer(right, s.labels);
+    Performer performer(right, s.labels, names);
     performer.enter();
     if (both) {
         Movement& left = add_hand(s, person, SimHand::left, false);
-        Performer second(left, s.labels);
+        Performer second(left, s.labels, names);
         second.enter();
         for (const std::string& name : order) {
             if (takes_two_hands(name)) {
@@ -220,7 +220,7 @@ Sequence in_company(Company company, std::uint64_t seed, const std::vector<std::
     Sequence s = begin(to_string(company), seed, seen);
     const Person owner = with_room_for(names, draw_person(seed));
     Movement& hand = add_hand(s, owner, owner.hand, false);
-    Performer performer(hand, s.labels);
+    Performer performer(hand, s.labels, names);
     std::vector<std::string> order = names;
     sim::Random random(sim::mix(seed, 71U));
     shuffle(order, random);
@@ -238,7 +238,7 @@ Sequence in_company(Company company, std::uint64_t seed, const std::vector<std::
     Movement& strange = add_hand(s, stranger, stranger.hand, true);
     strange.wait(engaged);
     std::vector<GestureLabel> of_nobody;
-    Performer guest(strange, of_nobody);
+    Performer guest(strange, of_nobody, names);
     if (company == Company::queue || company == Company::child) {
         guest.enter();
     }
