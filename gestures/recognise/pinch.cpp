@@ -191,7 +191,7 @@ void PinchMachine::finish(const Context& c) {
 
 void PinchMachine::handle(const Context& c, Event event, const Refusal& refusal,
                           CancelReason reason) {
-    broke_ = event == Event::dropped ? reason : CancelReason::none;
+    broke_ = event == Event::dropped && closed() ? reason : CancelReason::none;
     reporter_.report(c, step(state_, event, next(c, event, reason)), refusal,
                      [](auto of) { return name(of); });
 }

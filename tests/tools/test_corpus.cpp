@@ -194,6 +194,19 @@ TEST(Run, FindsTheSwipesOfSomebodySeenClearlyAndTheSameAgain) {
     EXPECT_EQ(again->findings.size(), first->findings.size());
 }
 
+// Grabs whose hands open in the same image: the pinches that gave way to them say nothing of it.
+TEST(Run, TwoHandsThatOpenTogetherHaveEnded) {
+    GestureSettings settings;
+    settings.swipe = settings.push = settings.pinch = false;
+    settings.two_hand_zoom = settings.two_hand_rotate = true;
+    const auto tally =
+        run(perform_all(names_of(settings), draw_person(11), 3, {View::joints, 60.0}), settings);
+    ASSERT_TRUE(tally);
+    EXPECT_EQ(tally->all().labelled, 6);
+    EXPECT_GE(tally->all().correct, 5);
+    EXPECT_EQ(tally->all().cancelled, 0);
+}
+
 TEST(Run, WhatStrangersDoIsTheirs) {
     GestureSettings settings;
     settings.pinch = false;

@@ -26,6 +26,13 @@ Stamp stamp_of(double t_s) { return Stamp{std::llround(t_s * 1e9)}; }
 
 }  // namespace
 
+Performer::Performer(Movement& hand, std::vector<GestureLabel>& labels,
+                     const std::vector<std::string>& names)
+    : m_(hand),
+      labels_(labels),
+      stays_bent_(std::find(names.begin(), names.end(), "open_palm") != names.end()),
+      stays_moving_(std::find(names.begin(), names.end(), "dwell") != names.end()) {}
+
 void Performer::add_label(const std::string& name, double start, double end, const Moment& commit) {
     // What somebody meant who cannot fulfil the definition is asked for all the same.
     if (!commit && m_.person().manner == Manner::usual) {
@@ -79,9 +86,9 @@ void Performer::go_slowly(const Vec3f& target) {
 void Performer::enter() {
     m_.begin("coming");
     m_.wait(0.6);  // an empty room first: something to learn the background from
-    m_.shape(loose(static_cast<float>(m_.draw(0.0, 0.5))), 0.5);
+    m_.shape(loose(static_cast<float>(stays_bent_ ? m_.draw(0.8, 1.0) : m_.draw(0.0, 0.5))), 0.5);
     m_.go(m_.home(), m_.draw(0.7, 1.7));
-    m_.wait(m_.draw(0.4, 1.0));
+    m_.wait(stays_moving_ ? 0.0 : m_.draw(0.4, 1.0));
 }
 
 void Performer::leave() {
@@ -93,9 +100,9 @@ void Performer::leave() {
 void Performer::rest() {
     m_.begin("between");
     m_.turn(Vec3f::Zero(), 0.4);
-    m_.shape(loose(static_cast<float>(poses_ ? m_.draw(0.8, 1.0) : m_.draw(0.0, 0.4))), 0.4);
+    m_.shape(loose(static_cast<float>(stays_bent_ ? m_.draw(0.8, 1.0) : m_.draw(0.0, 0.4))), 0.4);
     go_slowly(near_home(15.0));
-    m_.wait(m_.draw(0.3, 1.2));
+    m_.wait(stays_moving_ ? 0.0 : m_.draw(0.3, 1.2));
 }
 
 /// Back to where the stroke began: slowly, at once, or round a bend.
@@ -129,7 +136,6 @@ void Performer::go_back(double stroke) {
 }
 
 void Performer::perform(const std::string& name) {
-    poses_ = false;
     if (name == "swipe_left") {
         swipe(name, kLeft);
     } else if (name == "swipe_right") {
@@ -423,11 +429,10 @@ void Performer::raise() {
 
 void Performer::dwell() {
     m_.begin("on the way");
-    Vec3f target = near_home(20.0);
-    const double angle = m_.draw(-std::numbers::pi, std::numbers::pi);
-    target +=
-        static_cast<float>(m_.draw(40.0, 70.0)) *
-        Vec3f(static_cast<float>(std::cos(angle)), static_cast<float>(0.5 * std::sin(angle)), 0.0F);
+    // To the other side of home, well away from where it dwelt last.
+    const float side = m_.place().x() > m_.home().x() ? -1.0F : 1.0F;
+    const Vec3f target = near_home(15.0) + Vec3f(side * static_cast<float>(m_.draw(40.0, 70.0)),
+                                                 static_cast<float>(m_.draw(-30.0, 30.0)), 0.0F);
     const double start = m_.now();
     m_.go_at(target, m_.draw(120.0, 260.0));
     m_.begin("dwell");
@@ -495,7 +500,6 @@ void Performer::drag() {
 }
 
 void Performer::pose(const std::string& name) {
-    poses_ = true;
     constexpr float kQuarter = 0.5F * std::numbers::pi_v<float>;
     sim::FingerAngles shape = flat();
     Vec3f turned = Vec3f::Zero();

@@ -27,7 +27,9 @@ namespace xtrack::tools::corpus {
 class Performer {
  public:
     /// @param labels in order of their starts as long as one hand performs
-    Performer(Movement& hand, std::vector<GestureLabel>& labels) : m_(hand), labels_(labels) {}
+    /// @param names all that is asked for: what is one of it is not done between
+    Performer(Movement& hand, std::vector<GestureLabel>& labels,
+              const std::vector<std::string>& names);
 
     /// Comes from below, rests.
     void enter();
@@ -79,7 +81,8 @@ class Performer {
     Movement& m_;
     std::vector<GestureLabel>& labels_;
     int short_ = 0;
-    bool poses_ = false;  ///< the last was one: an open hand between them would be another
+    bool stays_bent_ = false;    ///< an open hand that rests would be a pose
+    bool stays_moving_ = false;  ///< one that is still would dwell
 };
 
 /// Both hands pinch or grab, and then pull apart, come together or turn.

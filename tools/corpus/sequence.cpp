@@ -79,7 +79,7 @@ void lean_over(Movement& m, const Person& owner) {
 /// From the side, through where the owner gestures, and out again.
 void cross(Movement& m, const Person& owner) {
     m.begin("crossing");
-    const float side = m.draw(-1.0, 1.0) < 0.0 ? -1.0F : 1.0F;
+    const float side = m.person().to_side_mm < owner.to_side_mm ? -1.0F : 1.0F;
     const float z = owner.home_mm.z() + static_cast<float>(m.draw(-60.0, 80.0));
     const Vec3f outside(side * (0.56F * z + 120.0F), static_cast<float>(m.draw(-60.0, 120.0)), z);
     m.go_evenly(outside, 0.0);
@@ -109,14 +109,17 @@ Person stranger_near(Company company, std::uint64_t seed, const Person& owner) {
             p.home_mm.z() = owner.home_mm.z() + static_cast<float>(random.between(-40.0, 80.0));
             break;
         case Company::over_the_shoulder:
-        case Company::crossing:
             p.to_side_mm = owner.to_side_mm;
+            p.home_mm.z() = owner.home_mm.z();
+            break;
+        case Company::crossing:  // from where they stand
+            p.to_side_mm = owner.to_side_mm + side * random.between(450.0, 700.0);
             p.home_mm.z() = owner.home_mm.z();
             break;
     }
     p.home_mm.x() = static_cast<float>(p.to_side_mm + random.between(-70.0, -10.0));
     p.chest_mm = p.home_mm.z() + random.between(1.2, 1.8) * p.hand_length_mm;
-    if (company == Company::over_the_shoulder || company == Company::crossing) {
+    if (company == Company::over_the_shoulder) {
         p.chest_mm = owner.chest_mm + 450.0;
     }
     return p;
@@ -160,11 +163,11 @@ Sequence perform_all(const std::vector<std::string>& names, const Person& who, i
     shuffle(order, random);
     const bool both = std::any_of(names.begin(), names.end(), takes_two_hands);
     Movement& right = add_hand(s, person, both ? SimHand::right : person.hand, false);
-    Performer performer(right, s.labels);
+    Performer performer(right, s.labels, names);
     performer.enter();
     if (both) {
         Movement& left = add_hand(s, person, SimHand::left, false);
-        Performer second(left, s.labels);
+        Performer second(left, s.labels, names);
         second.enter();
         for (const std::string& name : order) {
             if (takes_two_hands(name)) {
@@ -220,7 +223,7 @@ Sequence in_company(Company company, std::uint64_t seed, const std::vector<std::
     Sequence s = begin(to_string(company), seed, seen);
     const Person owner = with_room_for(names, draw_person(seed));
     Movement& hand = add_hand(s, owner, owner.hand, false);
-    Performer performer(hand, s.labels);
+    Performer performer(hand, s.labels, names);
     std::vector<std::string> order = names;
     sim::Random random(sim::mix(seed, 71U));
     shuffle(order, random);
@@ -238,7 +241,7 @@ Sequence in_company(Company company, std::uint64_t seed, const std::vector<std::
     Movement& strange = add_hand(s, stranger, stranger.hand, true);
     strange.wait(engaged);
     std::vector<GestureLabel> of_nobody;
-    Performer guest(strange, of_nobody);
+    Performer guest(strange, of_nobody, names);
     if (company == Company::queue || company == Company::child) {
         guest.enter();
     }
