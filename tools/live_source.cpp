@@ -42,7 +42,7 @@ Result<OpenedSource> open_simulator(const SourceOptions& source, const StreamOpt
         return settings.error();
     }
     if (!options.use_rig && !stream.gestures) {
-        options.gestures.pinch = false;  // so that a method is not refused for it
+        options.gestures = without_millimetres(options.gestures);  // no method is refused for them
     }
     if (source.seed != 0) {
         settings->vary(source.seed);

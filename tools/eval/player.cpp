@@ -41,7 +41,7 @@ Result<PlayedRecording> play_recording(const std::string& folder, const SessionO
 Result<std::vector<GestureEvent>> recognise(const PlayedRecording& recording,
                                             GestureSettings settings) {
     if (!recording.metric) {
-        settings.pinch = false;  // as a session does
+        settings = without_millimetres(settings);  // as a session does
     }
     auto recogniser = GestureRecogniser::create(settings);
     if (!recogniser) {
