@@ -12,8 +12,8 @@ const char* to_string(View view) noexcept {
     return "unknown";
 }
 
-// `xtrack corpus --measure-noise --people 6`: `fine` is ideal-60 with three patterns, `coarse` is
-// webcam-30 with two colour patterns.
+// `xtrack corpus --measure-noise`, of the demonstration's people (docs/corpus.md): `fine` is
+// ideal-60 with three patterns, `coarse` is webcam-30 with two colour patterns.
 const Noise& noise_of(View view) noexcept {
     static const Noise fine = [] {
         Noise n;
