@@ -31,6 +31,7 @@ constexpr std::array<Bones, kFingerCount> kBones{{{46.2F, 31.6F, 0.0F, 27.3F},
 // Where knuckles lie from the middle of the palm: toward the fingers, toward the thumb, mm.
 constexpr std::array<float, kFingerCount> kKnuckleUp{0.0F, 36.0F, 37.0F, 33.0F, 26.0F};
 constexpr std::array<float, kFingerCount> kKnuckleAside{0.0F, 25.0F, 5.0F, -14.0F, -30.0F};
+constexpr float kWristMm = 49.0F;  // below the middle of the palm
 // The thumb's first joint, from the wrist.
 constexpr float kThumbUpMm = 18.0F;
 constexpr float kThumbAsideMm = 22.0F;
@@ -53,6 +54,19 @@ struct Axes {
         return middle_mm + scale * (up_mm * up + aside_mm * aside);
     }
 };
+
+/// Where straight fingers point, on the whole; zero where none is. A wrist bends sideways, so that
+/// the forearm tells less.
+Vec3f to_fingers(const Hand& hand) {
+    Vec3f sum = Vec3f::Zero();
+    for (const Finger finger : {Finger::index, Finger::middle, Finger::ring, Finger::little}) {
+        const auto f = static_cast<std::size_t>(finger);
+        if (hand.fingertips[f].valid && hand.finger_extension[f] >= kStraight) {
+            sum += (hand.fingertips[f].position_mm - hand.palm_mm).normalized();
+        }
+    }
+    return sum;
+}
 
 /// A finger with its tip in view: the joints between it and the root lie on a line, if it is
 /// straight.
@@ -87,12 +101,19 @@ void infer_joints(const HandRegion& region, int thumb_side, Hand& hand) {
     axes.scale = region.palm_radius_mm / (kRadiusOfLength * kMeasuredHandMm);
     axes.in = -hand.palm_normal;
     axes.middle_mm = region.palm_mm + axes.scale * kPalmHalfMm * axes.in;
-    const Vec3f wrist_mm = region.wrist_mm + axes.scale * kPalmHalfMm * axes.in;
     hand.joint(Joint::palm) = {axes.middle_mm, true};
-    hand.joint(Joint::wrist) = {wrist_mm, true};
 
-    Vec3f up = axes.middle_mm - wrist_mm;
+    Vec3f up = to_fingers(hand);
+    const bool pointing = !up.isZero();
+    if (!pointing) {
+        up = region.palm_mm - region.wrist_mm;
+    }
     up -= up.dot(axes.in) * axes.in;
+    // Where the forearm was cut off lies on its skin, and where it is thinnest.
+    const Vec3f wrist_mm = pointing && up.norm() > 0.0F
+                               ? Vec3f(axes.middle_mm - axes.scale * kWristMm * up.normalized())
+                               : Vec3f(region.wrist_mm + axes.scale * kPalmHalfMm * axes.in);
+    hand.joint(Joint::wrist) = {wrist_mm, true};
     if (thumb_side == 0 || up.norm() < 1.0F) {
         return;
     }

@@ -74,7 +74,7 @@ TEST(Drag, TheBorderCancels) {
 
 TEST(Drag, NeedsSomethingToGoOnFrom) {
     GestureSettings alone = dragging();
-    alone.pinch = false;
+    alone.pinch = alone.grab = false;
     const auto refused = validate(alone);
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().message, ::testing::HasSubstr("drag is on; switch pinch"));

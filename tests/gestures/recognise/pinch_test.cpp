@@ -219,6 +219,7 @@ std::vector<std::string> story_of(const Closing& closing) {
         hand.id = 1;
         hand.confidence = 1.0F;
         hand.palm_mm = kRest;
+        hand.articulated = true;
         put(hand, Joint::index_proximal, kRest);
         const auto between = [s](const Vec3f& a, const Vec3f& b) { return Vec3f(a + s * (b - a)); };
         hand.fingertip(Finger::thumb) = {kRest + between(closing.thumb_open, closing.thumb_closed),

@@ -63,7 +63,7 @@ TEST_P(JointsOf, AnOpenHandLieWithinAFingersWidth) {
     std::vector<double> all;
     for (const auto& [joint, mm] : errors) {
         std::printf("%-20s %5.1f mm, %zu images\n", to_string(joint), median(mm), mm.size());
-        EXPECT_LE(median(mm), joint == Joint::wrist ? 35.0 : 25.0) << to_string(joint);
+        EXPECT_LE(median(mm), 25.0) << to_string(joint);
         all.push_back(median(mm));
     }
     EXPECT_LE(median(all), 15.0);
