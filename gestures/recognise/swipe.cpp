@@ -33,9 +33,6 @@ constexpr float kTowardWrist = -0.7F;
 // A stroke that is over its peak by so much comes to rest in view. Peaks of a line fit over 100 ms
 // scatter by 5 % with 3 mm of noise.
 constexpr float kSlowsShare = 0.5F;
-// The two halves of 100 mm on a circle of 290 mm part by it; an arm that swings about its elbow has
-// 8, noise of 3 mm makes 4.
-constexpr double kBentDeg = 10.0;
 
 double degrees(double rad) { return rad * 180.0 / std::numbers::pi; }
 
@@ -322,16 +319,6 @@ Refusal SwipeMachine::objection(const Context& c, bool stops) const {
     if (carried && !stops) {
         return {"may turn a corner yet", 0.0, 0.0};
     }
-    if (s.circle && !stops) {
-        // A circle goes on round at the same speed; a stroke that is bent comes to an end.
-        const double bent_deg = bend_deg(c);
-        const auto speed_mmps =
-            static_cast<double>(c.history.velocity(from_ms(s.velocity_window_ms)).norm());
-        if (bent_deg > kBentDeg &&
-            speed_mmps > static_cast<double>(kSlowsShare * stroke_.peak_mmps)) {
-            return {"may be a circle yet", bent_deg, kBentDeg};
-        }
-    }
     if (!now.from_joints && withdraws(distal)) {
         // The border eats up a hand that leaves, and stops its palm while its fingers go on.
         const Duration window = from_ms(s.velocity_window_ms);
@@ -356,24 +343,6 @@ Refusal SwipeMachine::objection(const Context& c, bool stops) const {
         }
     }
     return {};
-}
-
-/// How far the stroke's second half turns from its first.
-double SwipeMachine::bend_deg(const Context& c) const {
-    const MotionSample& now = c.history.newest();
-    const Vec3f whole = now.palm_mm - stroke_.palm_mm;
-    const std::size_t samples = c.history.count_within(now.stamp - stroke_.start);
-    const MotionSample* middle = &now;
-    float nearest = 1e9F;
-    for (std::size_t i = 0; i < samples; ++i) {
-        const MotionSample& sample = c.history.at(i);
-        const float along = (sample.palm_mm - stroke_.palm_mm).dot(whole) / whole.squaredNorm();
-        if (std::abs(along - 0.5F) < nearest) {
-            nearest = std::abs(along - 0.5F);
-            middle = &sample;
-        }
-    }
-    return angle_deg(middle->palm_mm - stroke_.palm_mm, now.palm_mm - middle->palm_mm);
 }
 
 void SwipeMachine::begin_stroke(const Context& c, Direction direction) {

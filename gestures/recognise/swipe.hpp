@@ -47,7 +47,6 @@ class SwipeMachine {
 
     [[nodiscard]] Event judge(const Context& c, const Vec3f& velocity, Refusal& refusal);
     [[nodiscard]] Refusal objection(const Context& c, bool stops) const;
-    [[nodiscard]] double bend_deg(const Context& c) const;
     void begin_stroke(const Context& c, Direction direction);
     void commit(const Context& c);
     void note_rest(const Context& c, const Vec3f& velocity);

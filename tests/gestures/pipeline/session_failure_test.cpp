@@ -116,7 +116,8 @@ TEST(Session, HandsThatBreakTheirPromiseAreRefused) {
     ASSERT_TRUE(session);
     const auto too_many = session->run();
     ASSERT_FALSE(too_many);
-    EXPECT_NE(too_many.error().message.find("at most 2"), std::string::npos);
+    EXPECT_NE(too_many.error().message.find("at most " + std::to_string(kMaxHands)),
+              std::string::npos);
 }
 
 TEST(Session, AWaitInACallbackIsRefused) {

@@ -57,8 +57,9 @@ TEST(JointRecording, BadRowsAreNamed) {
     EXPECT_THAT(message_of("0,right,x,1,1,2,3,,,\n"), HasSubstr("hand_id"));
     EXPECT_THAT(message_of("0,right,1,1,1,2,3,,,\n0,left,1,1,1,2,3,,,\n"),
                 HasSubstr("line 3: hand_id"));
-    EXPECT_THAT(message_of("0,right,1,1,1,2,3,,,\n0,left,2,1,1,2,3,,,\n0,left,3,1,1,2,3,,,\n"),
-                HasSubstr("line 4: t_us is '0'; it has over 2 hands"));
+    EXPECT_THAT(message_of("0,right,1,1,1,2,3,,,\n0,left,2,1,1,2,3,,,\n0,left,3,1,1,2,3,,,\n"
+                           "0,left,4,1,1,2,3,,,\n0,left,5,1,1,2,3,,,\n"),
+                HasSubstr("line 6: t_us is '0'; it has over 4 hands"));
     EXPECT_THAT(message_of(""), HasSubstr("lists no frame"));
 }
 
