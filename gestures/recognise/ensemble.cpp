@@ -154,6 +154,9 @@ void Ensemble::see(const HandFrame& frame, bool first) {
         }
         pass_time(slot, now, now, now);
         if (slot.used && slot.seen_now) {
+            if (slot.jumps(now)) {
+                slot.presence.enter_anew(now);
+            }
             slot.seen_now = slot.presence.followed() && slot.add(now, frame.span);
         }
     }

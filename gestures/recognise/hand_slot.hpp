@@ -119,6 +119,9 @@ struct HandSlot {
     /// @return false when the sample was left out (MotionHistory::add())
     bool add(Stamp now, Duration span);
     void forget_motion();
+    /// The palm is where no hand can be after the last two samples: another place of the arm was
+    /// taken for it until now, or is from now on.
+    [[nodiscard]] bool jumps(Stamp now) const noexcept;
 
     void drop(const Context& c, CancelReason reason, const char* why);
     /// What is active and will not be wanted any more is cancelled.

@@ -27,6 +27,12 @@ class Presence {
 
     /// A hand is seen for the first time. @param in_view it was there when the stream began
     void appear(Stamp now, bool in_view);
+    /// What was followed until now was not the hand: one that enters begins to.
+    void enter_anew(Stamp now) noexcept {
+        if (state_ == State::appearing || state_ == State::entering) {
+            first_seen_ = now;
+        }
+    }
     /// What time alone brings; call until it changes nothing.
     Step pass(const Times& times, Stamp now);
     Step see(Stamp now);

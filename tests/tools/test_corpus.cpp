@@ -177,9 +177,19 @@ TEST(Tracked, AHandThatWasAwayHasAnotherId) {
     EXPECT_EQ(tracked.at(1.25).hands[0].id, 2);
 }
 
-TEST(Run, FindsTheSwipesOfSomebodySeenClearlyAndTheSameAgain) {
+GestureSettings no_gestures() {
     GestureSettings settings;
-    settings.pinch = settings.push = false;
+    for (const GestureField& field : gesture_fields()) {
+        if (field.is_switch) {
+            field.set(settings, 0.0);
+        }
+    }
+    return settings;
+}
+
+TEST(Run, FindsTheSwipesOfSomebodySeenClearlyAndTheSameAgain) {
+    GestureSettings settings = no_gestures();
+    settings.swipe = true;
     Person person = somebody();
     person.speed_mmps = 700.0;
     const Sequence s = perform_all(names_of(settings), person, 3, {});
@@ -196,8 +206,7 @@ TEST(Run, FindsTheSwipesOfSomebodySeenClearlyAndTheSameAgain) {
 
 // Grabs whose hands open in the same image: the pinches that gave way to them say nothing of it.
 TEST(Run, TwoHandsThatOpenTogetherHaveEnded) {
-    GestureSettings settings;
-    settings.swipe = settings.push = settings.pinch = false;
+    GestureSettings settings = no_gestures();
     settings.two_hand_zoom = settings.two_hand_rotate = true;
     const auto tally =
         run(perform_all(names_of(settings), draw_person(11), 3, {View::joints, 60.0}), settings);

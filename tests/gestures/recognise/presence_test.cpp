@@ -168,5 +168,18 @@ TEST(Presence, ManyIdsInARowLeakNothing) {
     EXPECT_THAT(stage.events, IsEmpty());
 }
 
+TEST(Presence, AJumpOnTheWayInBeginsTheEntryAnew) {
+    // An elbow is followed for 200 ms; then the hand comes into view, and goes on upward.
+    Stage stage;
+    stage.play(Actor{{{0, {0, 0, 400}, 70, false}, {100, {0, 0, 400}, 70, false}}}, 30);
+    Actor actor{{{133, {-200, -210, 450}},
+                 {337, {-200, -205, 450}},
+                 {362, {0, -200, 450}},
+                 {662, {0, 50, 400}},
+                 {1500, {0, 50, 400}}}};
+    stage.play(actor, 30);
+    EXPECT_THAT(stage.story(), ::testing::IsEmpty());
+}
+
 }  // namespace
 }  // namespace xtrack::test
