@@ -198,7 +198,7 @@ void Ensemble::act(HandSlot& slot, Stamp now) {
 }
 
 /// Two hands that grip: those of the gesture that is active, else the first two of one body.
-TwoGrips Ensemble::two_grips(Stamp /*now*/) {
+TwoGrips Ensemble::two_grips() {
     std::array<HandSlot*, 2> slots{};
     std::size_t count = 0;
     for (HandSlot& slot : slots_) {
@@ -247,7 +247,7 @@ void Ensemble::act_together(Stamp now) {
             return;  // frozen: nothing is known of it just now
         }
     }
-    const TwoGrips grips = two_grips(now);
+    const TwoGrips grips = two_grips();
     HandSlot* const one = slot_of(grips.hand_id);
     HandSlot* const other = slot_of(grips.other_hand_id);
     if (one == nullptr || other == nullptr) {

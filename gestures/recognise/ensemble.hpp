@@ -54,7 +54,7 @@ class Ensemble {
     void engage(Stamp now);
     void act(HandSlot& slot, Stamp now);
     void act_together(Stamp now);
-    [[nodiscard]] TwoGrips two_grips(Stamp now);
+    [[nodiscard]] TwoGrips two_grips();
     [[nodiscard]] bool is_two_handed(const HandSlot& slot) const noexcept;
 
     GestureSettings settings_;
