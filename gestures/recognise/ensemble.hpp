@@ -9,7 +9,7 @@
 #include "gestures/recognise/context.hpp"
 #include "gestures/recognise/engagement.hpp"
 #include "gestures/recognise/hand_slot.hpp"
-#include "gestures/recognise/two_hands.hpp"
+#include "gestures/recognise/machines/two_hands.hpp"
 
 namespace xtrack::recognise {
 

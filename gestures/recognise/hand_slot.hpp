@@ -4,23 +4,23 @@
 #include <xtrack/hand.hpp>
 #include <xtrack/one_euro_filter.hpp>
 
-#include "gestures/recognise/circle.hpp"
 #include "gestures/recognise/context.hpp"
-#include "gestures/recognise/double.hpp"
-#include "gestures/recognise/drag.hpp"
-#include "gestures/recognise/dwell.hpp"
-#include "gestures/recognise/grab.hpp"
-#include "gestures/recognise/pinch.hpp"
-#include "gestures/recognise/pose.hpp"
+#include "gestures/recognise/machines/circle.hpp"
+#include "gestures/recognise/machines/double.hpp"
+#include "gestures/recognise/machines/drag.hpp"
+#include "gestures/recognise/machines/dwell.hpp"
+#include "gestures/recognise/machines/grab.hpp"
+#include "gestures/recognise/machines/pinch.hpp"
+#include "gestures/recognise/machines/pose.hpp"
+#include "gestures/recognise/machines/press.hpp"
+#include "gestures/recognise/machines/push.hpp"
+#include "gestures/recognise/machines/raise.hpp"
+#include "gestures/recognise/machines/swipe.hpp"
+#include "gestures/recognise/machines/tap.hpp"
+#include "gestures/recognise/machines/touch.hpp"
+#include "gestures/recognise/machines/wave.hpp"
 #include "gestures/recognise/presence.hpp"
-#include "gestures/recognise/press.hpp"
-#include "gestures/recognise/push.hpp"
-#include "gestures/recognise/raise.hpp"
 #include "gestures/recognise/silence.hpp"
-#include "gestures/recognise/swipe.hpp"
-#include "gestures/recognise/tap.hpp"
-#include "gestures/recognise/touch.hpp"
-#include "gestures/recognise/wave.hpp"
 
 namespace xtrack::recognise {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
-#include "gestures/recognise/pose.hpp"
+#include "gestures/recognise/machines/pose.hpp"
 #include "tests/gestures/recognise/play_fingers.hpp"
 
 namespace xtrack::test {

@@ -11,7 +11,7 @@
 // Armed means that the fingers were seen apart a moment ago; without that approach a hand that is
 // merely held closed would pinch. Spoilt is a closing that was something else: a fist, a number,
 // a hand that never came to rest.
-#include "gestures/recognise/pinch.hpp"
+#include "gestures/recognise/machines/pinch.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 //    │  dropped    │                           │ dropped (cancel)
 //    ├─────────────┘                           │
 //    └─────────────────────────────────────────┘
-#include "gestures/recognise/drag.hpp"
+#include "gestures/recognise/machines/drag.hpp"
 
 namespace xtrack::recognise {
 

@@ -12,7 +12,7 @@
 //
 // A virtual force grows while the hand moves toward the screen, the faster the more for every
 // millimetre, and shrinks while it moves back or aside (Ultraleap TouchFree, AirPush).
-#include "gestures/recognise/press.hpp"
+#include "gestures/recognise/machines/press.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 // A thrust, toward the screen or away from it, is judged over a whole window, so there is no
 // candidate state: before the window is full of it, nothing is known. Recovering is the way back,
 // until the hand has been still.
-#include "gestures/recognise/push.hpp"
+#include "gestures/recognise/machines/push.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 // Winding has more than half a turn, which nothing but a circle has, and is none yet. Two points
 // are looked at: the index tip while it points, because a small circle is drawn with it alone, and
 // the palm, because a hand that draws a large one need not point.
-#include "gestures/recognise/circle.hpp"
+#include "gestures/recognise/machines/circle.hpp"
 
 #include <algorithm>
 #include <cmath>

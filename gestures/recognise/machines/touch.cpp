@@ -10,7 +10,7 @@
 //
 // The finger that is nearest to the screen touches; where no fingertip is known, the palm. It must
 // have been seen outside before: a hand that comes into view inside the plane has touched nothing.
-#include "gestures/recognise/touch.hpp"
+#include "gestures/recognise/machines/touch.hpp"
 
 #include <algorithm>
 

@@ -9,7 +9,7 @@
 //
 // A turn is where the palm goes back after a stroke of 50 mm to the left or right. Turns that are
 // too old fall away from the front; without any the machine waits again.
-#include "gestures/recognise/wave.hpp"
+#include "gestures/recognise/machines/wave.hpp"
 
 #include <algorithm>
 #include <cmath>

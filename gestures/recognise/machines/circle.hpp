@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <optional>
 
-#include "gestures/recognise/arc_path.hpp"
 #include "gestures/recognise/context.hpp"
+#include "gestures/recognise/machines/arc_path.hpp"
 #include "gestures/recognise/step.hpp"
 
 namespace xtrack::recognise {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gestures/recognise/arc_path.hpp"
+#include "gestures/recognise/machines/arc_path.hpp"
 
 #include <algorithm>
 #include <cmath>

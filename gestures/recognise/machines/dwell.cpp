@@ -10,7 +10,7 @@
 //
 // Only where the hand points counts: its way to and from the screen does not. A place that was
 // dwelt on is spent until the hand has left it.
-#include "gestures/recognise/dwell.hpp"
+#include "gestures/recognise/machines/dwell.hpp"
 
 #include <algorithm>
 

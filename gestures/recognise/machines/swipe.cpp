@@ -8,7 +8,7 @@
 //
 // A stroke begins when the hand moves along one of the four directions, and is judged by what it
 // has done since. Coasting is the rest of a stroke that has committed.
-#include "gestures/recognise/swipe.hpp"
+#include "gestures/recognise/machines/swipe.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 //    ▲                │ one (begin and end are sent)
 //    │                │ late, dropped (silent)
 //    └────────────────┘
-#include "gestures/recognise/double.hpp"
+#include "gestures/recognise/machines/double.hpp"
 
 #include <utility>
 

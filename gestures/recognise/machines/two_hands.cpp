@@ -7,7 +7,7 @@
 //    │  dropped    │                          │ dropped (cancel)
 //    ├─────────────┘                          │
 //    └────────────────────────────────────────┘
-#include "gestures/recognise/two_hands.hpp"
+#include "gestures/recognise/machines/two_hands.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 // The index bends quickly and alone, and straightens again: that is when a tap is known to be one.
 // Joints say how far it bends. Of a camera's hand it is how far the way from palm to index tip
 // leans toward the screen, the median of a moment, because tips are taken for one another.
-#include "gestures/recognise/tap.hpp"
+#include "gestures/recognise/machines/tap.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 //
 // Shown is a pose that fits but has not been held for long. A held one may waver: its end asks for
 // less than its begin, and for a moment.
-#include "gestures/recognise/pose.hpp"
+#include "gestures/recognise/machines/pose.hpp"
 
 #include <algorithm>
 #include <array>

@@ -10,7 +10,7 @@
 //
 // Armed means that the hand was seen open a moment ago: a hand that comes as a fist, or rests half
 // closed, does not grab. Spoilt is a closing that was something else.
-#include "gestures/recognise/grab.hpp"
+#include "gestures/recognise/machines/grab.hpp"
 
 #include <algorithm>
 

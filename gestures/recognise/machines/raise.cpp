@@ -7,7 +7,7 @@
 //
 // A raise is known by its end: when the hand has become still, what it did before is looked at
 // once.
-#include "gestures/recognise/raise.hpp"
+#include "gestures/recognise/machines/raise.hpp"
 
 #include <algorithm>
 #include <cmath>
