@@ -112,6 +112,13 @@ struct GestureSettings {
     /// Sideways motion allowed: this, and a share of the length. 5..200; 0..1.
     double swipe_sideways_mm = 30.0;
     double swipe_sideways_share = 0.2;
+    /// How far the way may turn, were it an arc: from there on it is more likely a circle's first
+    /// quarter. 10..180. Measured: swipes of joints 0..36, circles of 40..130 mm radius 40..100.
+    double swipe_bend_deg = 40.0;
+    /// Mean extension of the four fingers that a camera's hand has at least: nobody swipes with a
+    /// fist, and a fist that is carried does all else that a swipe does. 0 = any hand. 0..1.
+    /// Measured: swipes 0.46..1, fists that are carried 0.2..0.35.
+    double swipe_open = 0.4;
     /// After a commit the opposite direction is barred so long *and* until the hand has been
     /// slower than swipe_rest_mmps. 0..2000; 10..200. The return stroke is no swipe.
     double swipe_return_bar_ms = 450.0;
@@ -150,11 +157,14 @@ struct GestureSettings {
     /// Slower for so long before the next. 20..500; 0..2000. NiTE1.
     double push_stable_mmps = 130.0;
     double push_stable_ms = 360.0;
+    /// Within so long after a thrust ended, an opposite one that is no faster brings the hand back.
+    /// 0..5000.
+    double push_return_memory_ms = 1500.0;
     /// As swipe_facing, for the palm toward the screen. 0..1.
     double push_facing = 0.5;
     /// A pull goes at least so far, because hands draw back to rest after whatever they
-    /// did. 40..600. Measured: hands that draw back 100..130, a pull 300.
-    double pull_length_mm = 150.0;
+    /// did. 40..600. Measured: hands that draw back 100..120, pulls 120..300.
+    double pull_length_mm = 120.0;
 
     // --- pinch -----------------------------------------------------------------------------------
     /// Thumb tip to index tip, or the share of the hand's length if that is more. 5..40; 0..0.3.

@@ -80,12 +80,15 @@ void PushMachine::update(const Context& c) {
         return;
     }
     thrust_ = measure(c);
-    if (state_ == State::recovering && *thrust_.refusal.why == '\0' && !undoes(thrust_)) {
+    if (*thrust_.refusal.why == '\0' && brings_back(c, thrust_)) {
         thrust_.refusal = {"the way back", thrust_.speed_mmps, kWindUpShare * last_.speed_mmps};
     }
     handle(c, *thrust_.refusal.why == '\0' ? Event::thrust : Event::moving, thrust_.refusal);
     if (state_ == State::recovering && thrust_.type == last_.type) {
         last_.speed_mmps = std::max(last_.speed_mmps, thrust_.speed_mmps);
+        if (thrust_.speed_mmps >= c.settings.push_stable_mmps) {
+            last_at_ = now;
+        }
     }
 }
 
@@ -129,9 +132,16 @@ std::optional<PushMachine::State> PushMachine::recovering(const Context& c, Even
     return std::nullopt;
 }
 
-/// A thrust against the one before is its way back, unless that one was a wind-up.
-bool PushMachine::undoes(const Thrust& thrust) const {
-    return thrust.type != last_.type && thrust.speed_mmps >= kWindUpShare * last_.speed_mmps;
+/// A thrust against the one before is its way back, unless that one was a wind-up. While the hand
+/// has not been still since, one the same way is the same thrust.
+bool PushMachine::brings_back(const Context& c, const Thrust& thrust) const {
+    const bool recovers = state_ == State::recovering;
+    const bool fresh =
+        recovers || to_ms(thrust.start - last_at_) < c.settings.push_return_memory_ms;
+    if (thrust.type == last_.type) {
+        return recovers;
+    }
+    return fresh && thrust.speed_mmps < kWindUpShare * last_.speed_mmps;
 }
 
 PushMachine::Thrust PushMachine::measure(const Context& c) const {
@@ -199,6 +209,7 @@ PushMachine::Thrust PushMachine::measure(const Context& c) const {
 void PushMachine::commit(const Context& c) {
     slow_ = false;
     last_ = thrust_;
+    last_at_ = c.sensor;
     GestureEvent e = event_of(c, thrust_.type, EventPhase::begin);
     e.gesture_id = c.next_gesture_id++;
     e.onset = thrust_.start;

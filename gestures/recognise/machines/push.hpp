@@ -43,12 +43,13 @@ class PushMachine {
     std::optional<State> recovering(const Context& c, Event event);
 
     [[nodiscard]] Thrust measure(const Context& c) const;
-    [[nodiscard]] bool undoes(const Thrust& thrust) const;
+    [[nodiscard]] bool brings_back(const Context& c, const Thrust& thrust) const;
     void commit(const Context& c);
 
     State state_ = State::waiting;
     Thrust thrust_;
-    Thrust last_;  ///< the one that committed, its speed the fastest that it came to
+    Thrust last_;    ///< the one that committed, its speed the fastest that it came to
+    Stamp last_at_;  ///< when that was fast for the last time
     Reporter reporter_{"push"};
     Stamp not_before_;    ///< samples before it are not looked at: the hand was gated
     Stamp stable_since_;  ///< valid while `slow_`

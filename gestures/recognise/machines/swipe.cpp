@@ -14,6 +14,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "gestures/recognise/machines/carriage.hpp"
+
 namespace xtrack::recognise {
 
 namespace {
@@ -24,6 +26,7 @@ constexpr Duration kLookBack = std::chrono::milliseconds{150};
 constexpr float kLookBackShare = 0.5F;  // of swipe_dies_mmps: still part of the stroke
 // A stroke that is this much faster than the one it undoes was the swipe, the first its wind-up.
 constexpr float kWindUpShare = 1.2F;
+constexpr Duration kSeenBefore = std::chrono::milliseconds{300};
 constexpr double kShownFacing = 0.7;  // palm toward the screen, 45 degrees
 constexpr float kConfidenceFloor = 0.5F;
 // A hand that turns by more has ended its way in and begun something else.
@@ -262,41 +265,30 @@ Refusal SwipeMachine::objection(const Context& c, bool stops) const {
         }
     }
 
-    // How the hand was held, on average over the stroke.
-    Vec3f facing = Vec3f::Zero();
-    Vec3f distal = Vec3f::Zero();
-    double outer = 0.0;
-    int outer_known = 0;
     const std::size_t samples = c.history.count_within(now.stamp - stroke_.start);
-    for (std::size_t i = 0; i < samples; ++i) {
-        const MotionSample& sample = c.history.at(i);
-        facing += sample.facing;
-        distal += sample.distal;
-        const float extension = sample.outer_extension();
-        if (extension >= 0.0F) {
-            outer += static_cast<double>(extension);
-            ++outer_known;
+    const Carriage held = carriage(c.history, samples, axis);
+    if (std::abs(held.bend_deg) > s.swipe_bend_deg) {
+        return {"bends", std::abs(held.bend_deg), s.swipe_bend_deg};
+    }
+    if (!now.from_joints) {
+        // Fingers blur in a stroke: those of an open hand were seen before it.
+        const std::size_t until = c.history.count_within(now.stamp - stroke_.start + kSeenBefore);
+        const double before = extension_in(c.history, samples, until - samples);
+        const double open = std::max(held.extension, before);
+        if (open >= 0.0 && open < s.swipe_open) {
+            return {"the hand is closed", open, s.swipe_open};
         }
     }
-    const bool facing_known = facing.norm() > 0.0F;
-    if (facing_known) {
-        facing.normalize();
-    }
-    double leads = static_cast<double>(facing.dot(axis));
-    double shown = static_cast<double>(-facing.z());
-    if (!now.facing_signed) {
-        leads = std::abs(leads);
-        shown = std::abs(shown);
-    }
-    const bool points =
-        now.from_joints && outer_known > 0 && outer / outer_known < s.swipe_pointing_extension;
+    const bool points = now.from_joints && held.outer_extension >= 0.0 &&
+                        held.outer_extension < s.swipe_pointing_extension;
     // Sideways a palm leads or shows itself to the screen on purpose; up and down it does so
-    // whenever a hand is raised or dropped, so that there nothing is learnt from it.
-    const bool tells = horizontal(stroke_.direction);
-    const bool paddle = tells && !points && leads >= s.swipe_facing;
-    const bool shows = tells && !points && shown >= kShownFacing;
-    const bool back = tells && !points && leads <= -s.swipe_facing;
-    const bool carried = points || (facing_known && !paddle && !shows && !back);
+    // whenever a hand is raised or dropped, unless it is held up flat.
+    const bool level = horizontal(stroke_.direction);
+    const bool paddle = level && !points && held.leads >= s.swipe_facing;
+    const bool shows = level && !points && held.shown >= kShownFacing;
+    const bool up = !level && !points && held.shown >= kShownFacing && held.is_upright();
+    const bool back = up || (level && !points && held.leads <= -s.swipe_facing);
+    const bool carried = points || (held.facing_known && !paddle && !shows && !back);
     const double least_mm = carried ? s.swipe_carried_length_mm
                             : back  ? s.swipe_back_length_mm
                                     : s.swipe_length_mm;
@@ -319,7 +311,7 @@ Refusal SwipeMachine::objection(const Context& c, bool stops) const {
     if (carried && !stops) {
         return {"may turn a corner yet", 0.0, 0.0};
     }
-    if (!now.from_joints && withdraws(distal)) {
+    if (withdraws(held.distal)) {
         // The border eats up a hand that leaves, and stops its palm while its fingers go on.
         const Duration window = from_ms(s.velocity_window_ms);
         const float along_mmps = std::max(c.history.velocity(window).dot(axis),

@@ -54,12 +54,30 @@ Vec3f at(float x, float y) { return {x, y, 400.0F}; }
 
 TEST(CameraHand, AFingerThatIsNotFoundIsNotFolded) {
     Stage stage;
-    // A hand that points would have to go 150 mm.
+    // A hand that points would have to go 150 mm; this one loses fingers in the stroke.
     const Actor actor{{{0, at(70, 0)}, {800, at(70, 0)}, {1100, at(-70, 0)}, {1700, at(-70, 0)}}};
-    play(stage, actor, [](int, double, Hand& hand) {
-        hand.finger_extension = {0.0F, 1.0F, 0.0F, 0.0F, 0.0F};
+    play(stage, actor, [](int, double ms, Hand& hand) {
+        const float others = ms < 800.0 ? 1.0F : 0.0F;
+        hand.finger_extension = {0.0F, 1.0F, others, others, others};
     });
     EXPECT_THAT(stage.story(), ElementsAre("swipe_left"));
+}
+
+TEST(CameraHand, AFistThatIsCarriedDoesNotSwipe) {
+    const Actor actor{{{0, at(70, 0)}, {800, at(70, 0)}, {1100, at(-70, 0)}, {1700, at(-70, 0)}}};
+    const auto with_extension = [&](float extension, double least) {
+        GestureSettings settings;
+        settings.swipe_open = least;
+        Stage stage(settings);
+        play(stage, actor, [&](int, double, Hand& hand) {
+            hand.finger_extension = {0.0F, extension, extension, extension, extension};
+        });
+        EXPECT_EQ(stage.explained("swipe", "the hand is closed"), stage.story().empty());
+        return stage.story();
+    };
+    EXPECT_THAT(with_extension(0.3F, 0.4), IsEmpty());
+    EXPECT_THAT(with_extension(0.5F, 0.4), ElementsAre("swipe_left"));
+    EXPECT_THAT(with_extension(0.3F, 0.0), ElementsAre("swipe_left"));
 }
 
 TEST(CameraHand, TheWayInFromTheBorderIsNoSwipe) {

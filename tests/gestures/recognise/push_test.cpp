@@ -111,8 +111,8 @@ TEST(Pull, AHandThatDrawsBackToRestDoesNotPull) {
     Stage stage(settings);
     stage.play(Actor{{{0, at(0, 0, 300)},
                       {800, at(0, 0, 300)},
-                      {1050, at(0, 0, 425)},
-                      {2000, at(0, 0, 425)}}},
+                      {1050, at(0, 0, 412)},
+                      {2000, at(0, 0, 412)}}},
                60);
     EXPECT_THAT(stage.story(), IsEmpty());
     EXPECT_TRUE(stage.explained("push", "short"));
@@ -136,6 +136,30 @@ TEST(Pull, ItsOwnWayBackIsNoPush) {
                        {1700, at(0, 0, 280)},
                        {2600, at(0, 0, 280)}}};
     EXPECT_THAT(pulls_and_pushes(actor), ElementsAre("pull"));
+}
+
+TEST(Pull, AWayBackAfterAPauseIsNoPush) {
+    // Still for longer than push_stable_ms, then as fast as the pull was.
+    const Actor actor{{{0, at(0, 0, 280)},
+                       {800, at(0, 0, 280)},
+                       {1200, at(0, 0, 500)},
+                       {1900, at(0, 0, 500)},
+                       {2300, at(0, 0, 280)},
+                       {3200, at(0, 0, 280)}}};
+    EXPECT_THAT(pulls_and_pushes(actor), ElementsAre("pull"));
+    GestureSettings forgetful;
+    forgetful.push_return_memory_ms = 0.0;
+    Stage stage(forgetful);
+    stage.play(actor, 60);
+    EXPECT_THAT(stage.story(), ElementsAre("pull", "push"));
+    // It is forgotten in time.
+    const Actor later{{{0, at(0, 0, 280)},
+                       {800, at(0, 0, 280)},
+                       {1200, at(0, 0, 500)},
+                       {3000, at(0, 0, 500)},
+                       {3400, at(0, 0, 280)},
+                       {4200, at(0, 0, 280)}}};
+    EXPECT_THAT(pulls_and_pushes(later), ElementsAre("pull", "push"));
 }
 
 TEST(Pull, AWindUpDoesNotBlockThePush) {

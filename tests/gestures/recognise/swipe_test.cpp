@@ -196,6 +196,39 @@ TEST(Swipe, APointingFingerDrawsCircles) {
     EXPECT_THAT(story_of(actor), ElementsAre("circle_counterclockwise"));
 }
 
+/// A quarter of a circle about (0, -radius) in 300 ms, after a rest.
+std::vector<std::string> story_of_quarter(float radius_mm, double most_deg) {
+    constexpr int kPieces = 20;
+    constexpr float kQuarter = 1.57079633F;
+    Actor actor{{{0.0, at(0, 0)}}};
+    for (int i = 0; i <= kPieces; ++i) {
+        const float rad = kQuarter * static_cast<float>(i) / kPieces;
+        actor.moments.push_back(
+            {800.0 + 15.0 * i, at(radius_mm * std::sin(rad), radius_mm * (std::cos(rad) - 1.0F))});
+    }
+    actor.moments.push_back({1800.0, actor.moments.back().palm_mm});
+    GestureSettings settings;
+    settings.swipe_bend_deg = most_deg;
+    Stage stage(settings);
+    stage.play(actor, 60);
+    return stage.story();
+}
+
+TEST(Swipe, ACirclesFirstQuarterIsNone) {
+    EXPECT_THAT(story_of_quarter(150.0F, 40.0), IsEmpty());
+    EXPECT_THAT(story_of_quarter(150.0F, 180.0), ElementsAre("swipe_right"));
+    // A forearm that swings about its elbow bends its way less.
+    EXPECT_THAT(story_of_quarter(330.0F, 40.0), ElementsAre("swipe_right"));
+}
+
+TEST(Swipe, AHandHeldUpFlatSwipesUpAndDownByTheRuleOfBacks) {
+    EXPECT_THAT(story_of(stroke(at(0, 180, 0), 450, Held::palm_screen)), ElementsAre("swipe_up"));
+    EXPECT_THAT(story_of(stroke(at(0, 180, 0), 450, Held::palm_down)), IsEmpty());
+    EXPECT_THAT(story_of(stroke(at(0, 180, 0), 850, Held::palm_screen)), IsEmpty());
+    EXPECT_THAT(story_of(stroke(at(0, -180, 0), 450, Held::palm_screen)),
+                ElementsAre("swipe_down"));
+}
+
 TEST(Swipe, APalmThatLeadsMaySwipeSlowly) {
     const Vec3f way = at(-160, 0, 0);
     EXPECT_THAT(story_of(stroke(way, 650, Held::palm_left)), ElementsAre("swipe_left"));
