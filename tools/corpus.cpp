@@ -142,7 +142,10 @@ class Plan {
             plan_manners();
         }
         if (wants(Part::everyday)) {
-            plan_everyday();
+            plan_everyday(false);
+        }
+        if (wants(Part::engaged)) {
+            plan_everyday(true);
         }
         if (wants(Part::passers_by)) {
             plan_passers_by();
@@ -267,14 +270,17 @@ class Plan {
         return static_cast<std::uint64_t>(std::ceil(options_.hours * 3600.0 / kSequenceS));
     }
 
-    void plan_everyday() {
+    /// @param engage whether it takes a session to be heard
+    void plan_everyday(bool engage) {
         for (const Wanted& set : sets_) {
             if (!set.everyday) {
                 continue;
             }
-            const std::size_t group = add_group(Part::everyday, set.name);
+            const std::size_t group = add_group(engage ? Part::engaged : Part::everyday, set.name);
+            GestureSettings settings = set.at_rest;
+            settings.engage = engage;
             for (std::uint64_t i = 0; i < pieces(); ++i) {
-                add_job(group, set.at_rest,
+                add_job(group, settings,
                         [person = seed(100'000 + i), seen = corpus::seen_by(i, options_.fps)] {
                             return corpus::everyday(person, kSequenceS, seen);
                         });
@@ -384,7 +390,7 @@ void add_corpus(CLI::App& app, int& exit_status) {
     command->add_flag("--images", options->images,
                       "Fringe images through the whole pipeline, too (some minutes)");
     command->add_option("--only", options->only, "One part alone")
-        ->check(CLI::IsMember(std::vector<std::string>{"gestures", "manners", "everyday",
+        ->check(CLI::IsMember(std::vector<std::string>{"gestures", "manners", "everyday", "engaged",
                                                        "passers-by", "company", "images"}));
     command
         ->add_option("--save", options->save,

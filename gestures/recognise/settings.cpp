@@ -112,6 +112,7 @@ constexpr std::array kFields{
     number<&S::swipe_sideways_share>("swipe_sideways_share", 0.0, 1.0),
     number<&S::swipe_bend_deg>("swipe_bend_deg", 10.0, 180.0),
     number<&S::swipe_open>("swipe_open", 0.0, 1.0),
+    number<&S::swipe_grab>("swipe_grab", 0.0, 1.0),
     number<&S::swipe_return_bar_ms>("swipe_return_bar_ms", 0.0, 2000.0),
     number<&S::swipe_rest_mmps>("swipe_rest_mmps", 10.0, 200.0),
     number<&S::swipe_return_memory_ms>("swipe_return_memory_ms", 0.0, 5000.0),

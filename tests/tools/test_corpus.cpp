@@ -250,8 +250,8 @@ TEST(Command, TheSameSeedGivesTheSameFigures) {
             EXPECT_EQ(group.at("all").at("labelled"), 10);
         }
     }
-    EXPECT_EQ(parts,
-              (std::set<std::string>{"gestures", "manners", "everyday", "passers-by", "company"}));
+    EXPECT_EQ(parts, (std::set<std::string>{"gestures", "manners", "everyday", "engaged",
+                                            "passers-by", "company"}));
 }
 
 TEST(Command, SavesWhatEvalReads) {

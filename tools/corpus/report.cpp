@@ -46,15 +46,19 @@ std::string table(const Group& group) {
     return out;
 }
 
+/// An engaged hour is one with a session.
+double counted_hours(const Group& group) {
+    return group.part == Part::engaged ? group.tally.engaged_hours : group.tally.hours;
+}
+
 std::string hours(const Group& group) {
     const Tally& t = group.tally;
-    const bool heard = group.part == Part::everyday;
+    const bool heard = group.part == Part::everyday || group.part == Part::engaged;
     const int events = heard ? t.false_events : t.strange_events;
+    const Estimate e = poisson(events, counted_hours(group));
     std::string out =
-        fmt::format("  {:<24} {:>5} events in {:.2f} h: {:>7} an hour", group.name, events, t.hours,
-                    fmt::format("{:.2f}", poisson(events, t.hours).value));
-    const Estimate e = poisson(events, t.hours);
-    out += fmt::format(" [{:.2f}, {:.2f}]", e.low, e.high);
+        fmt::format("  {:<24} {:>5} events in {:.2f} h: {:>7} an hour [{:.2f}, {:.2f}]", group.name,
+                    events, counted_hours(group), fmt::format("{:.2f}", e.value), e.low, e.high);
     if (group.part == Part::company) {
         out += fmt::format("; changes of owner {}", t.owner_changes);
     } else if (group.part == Part::passers_by) {
@@ -113,6 +117,7 @@ const char* title_of(Part part) {
         case Part::gestures: return "Gestures, hands with a tracker's noise";
         case Part::manners: return "People who move differently (no target)";
         case Part::everyday: return "Movement that is no gesture, listened to";
+        case Part::engaged: return "The same where it takes a session, by hours with one";
         case Part::passers_by: return "Movement of those who have no session";
         case Part::company: return "Strangers about one who has the session";
         case Part::images: return "Gestures, images through the whole pipeline";
@@ -150,6 +155,7 @@ const char* to_string(Part part) noexcept {
         case Part::gestures: return "gestures";
         case Part::manners: return "manners";
         case Part::everyday: return "everyday";
+        case Part::engaged: return "engaged";
         case Part::passers_by: return "passers-by";
         case Part::company: return "company";
         case Part::images: return "images";
@@ -165,7 +171,8 @@ std::string text_of(const std::vector<Group>& groups, bool explain) {
             out += fmt::format("{}{}\n", before == nullptr ? "" : "\n", title_of(group.part));
         }
         before = &group;
-        const bool counts_hours = group.part == Part::everyday || group.part == Part::passers_by;
+        const bool counts_hours = group.part == Part::everyday || group.part == Part::engaged ||
+                                  group.part == Part::passers_by;
         if (!counts_hours) {
             out += table(group);
         }
@@ -182,17 +189,19 @@ ordered_json json_of(const std::vector<Group>& groups) {
     ordered_json out = ordered_json::array();
     for (const Group& group : groups) {
         const Tally& t = group.tally;
-        ordered_json one = {{"part", to_string(group.part)},
-                            {"name", group.name},
-                            {"sequences", t.sequences},
-                            {"hours", t.hours},
-                            {"false_events", t.false_events},
-                            {"false_per_hour", json_of(poisson(t.false_events, t.hours))},
-                            {"events_of_strangers", t.strange_events},
-                            {"of_strangers_per_hour", json_of(poisson(t.strange_events, t.hours))},
-                            {"changes_of_owner", t.owner_changes},
-                            {"sessions_taken", t.engagements},
-                            {"short_of_definition", t.short_of_definition}};
+        ordered_json one = {
+            {"part", to_string(group.part)},
+            {"name", group.name},
+            {"sequences", t.sequences},
+            {"hours", t.hours},
+            {"engaged_hours", t.engaged_hours},
+            {"false_events", t.false_events},
+            {"false_per_hour", json_of(poisson(t.false_events, counted_hours(group)))},
+            {"events_of_strangers", t.strange_events},
+            {"of_strangers_per_hour", json_of(poisson(t.strange_events, t.hours))},
+            {"changes_of_owner", t.owner_changes},
+            {"sessions_taken", t.engagements},
+            {"short_of_definition", t.short_of_definition}};
         one["gestures"] = ordered_json::object();
         for (const auto& [name, score] : t.scores) {
             one["gestures"][name] = json_of(score);

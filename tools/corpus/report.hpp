@@ -15,6 +15,7 @@ enum class Part : std::uint8_t {
     gestures,    ///< people who gesture as usual
     manners,     ///< people who move differently
     everyday,    ///< movement that is none, of whoever has the session
+    engaged,     ///< the same where it takes a session, by hours with one
     passers_by,  ///< the same of those who have not
     company,     ///< strangers about one who has
     images,      ///< fringe images through the whole pipeline

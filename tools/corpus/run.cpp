@@ -78,6 +78,7 @@ void Tally::add(const Tally& other) {
     }
     findings.insert(findings.end(), other.findings.begin(), other.findings.end());
     hours += other.hours;
+    engaged_hours += other.engaged_hours;
     sequences += other.sequences;
     false_events += other.false_events;
     strange_events += other.strange_events;
@@ -170,7 +171,12 @@ Result<Tally> run(const Sequence& sequence, const GestureSettings& settings) {
             }
         }
     };
-    follow(sequence, tracked, [&](const HandFrame& frame) { take(recogniser->push(frame)); });
+    follow(sequence, tracked, [&](const HandFrame& frame) {
+        take(recogniser->push(frame));
+        if (recogniser->session_owner() != 0) {
+            of_strangers.engaged_hours += 1.0 / (sequence.frame_hz * 3600.0);
+        }
+    });
     take(recogniser->finish());
     GestureScorer scorer(settings);
     const std::vector<JudgedEvent> judged =

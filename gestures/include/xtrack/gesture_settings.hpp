@@ -119,6 +119,9 @@ struct GestureSettings {
     /// fist, and a fist that is carried does all else that a swipe does. 0 = any hand. 0..1.
     /// Measured: swipes 0.46..1, fists that are carried 0.2..0.35.
     double swipe_open = 0.4;
+    /// Grab value over the stroke, at most: the same where it is known. 0..1. Measured: swipes of
+    /// joints 0..0.34, of cameras 0..0.05.
+    double swipe_grab = 0.45;
     /// After a commit the opposite direction is barred so long *and* until the hand has been
     /// slower than swipe_rest_mmps. 0..2000; 10..200. The return stroke is no swipe.
     double swipe_return_bar_ms = 450.0;

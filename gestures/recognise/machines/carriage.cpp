@@ -9,8 +9,10 @@ namespace xtrack::recognise {
 
 namespace {
 
-constexpr float kUpright = 0.5F;        // 30 degrees over the horizontal
-constexpr double kFlatHand = 0.7;       // extension
+constexpr float kUpright = 0.7F;  // 45 degrees over the horizontal
+// Extension and grab of a flat hand. Measured: hands that swipe 0.75..1 and 0..0.2.
+constexpr double kFlatExtension = 0.7;
+constexpr double kFlatGrab = 0.25;
 constexpr float kLeastChordMm = 20.0F;  // a shorter one has no direction
 
 /// Mean of what is known.
@@ -55,7 +57,7 @@ double bend_of(const MotionHistory& history, std::size_t samples) {
 }  // namespace
 
 bool Carriage::is_upright() const noexcept {
-    return distal.y() >= kUpright && extension >= kFlatHand;
+    return distal.y() >= kUpright && extension >= kFlatExtension && grab <= kFlatGrab;
 }
 
 double extension_in(const MotionHistory& history, std::size_t back, std::size_t count) noexcept {
@@ -72,11 +74,13 @@ Carriage carriage(const MotionHistory& history, std::size_t samples, const Vec3f
     Carriage held;
     Vec3f facing = Vec3f::Zero();
     Mean outer;
+    Mean grab;
     for (std::size_t i = 0; i < samples; ++i) {
         const MotionSample& sample = history.at(i);
         facing += sample.facing;
         held.distal += sample.distal;
         outer.add(sample.outer_extension());
+        grab.add(sample.grab);
     }
     held.facing_known = facing.norm() > 0.0F;
     if (held.facing_known) {
@@ -93,6 +97,7 @@ Carriage carriage(const MotionHistory& history, std::size_t samples, const Vec3f
     }
     held.extension = extension_in(history, 0, samples);
     held.outer_extension = outer.value();
+    held.grab = grab.value();
     held.bend_deg = bend_of(history, samples);
     return held;
 }

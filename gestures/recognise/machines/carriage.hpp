@@ -19,6 +19,7 @@ struct Carriage {
     /// @}
     double extension = -1.0;        ///< of the four fingers, 0..1; -1 = not known
     double outer_extension = -1.0;  ///< of middle, ring and little finger
+    double grab = -1.0;             ///< 0..1 a fist; -1 = not known
     /// By how much the way turned from its begin to its end, were it an arc; x-y plane, positive is
     /// counterclockwise. It is measured on the area between way and chord, so that noise cancels.
     double bend_deg = 0.0;

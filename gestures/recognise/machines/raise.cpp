@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gestures/recognise/machines/carriage.hpp"
+
 namespace xtrack::recognise {
 
 namespace {
@@ -133,6 +135,14 @@ RaiseMachine::Rise RaiseMachine::measure(const Context& c) const {
         static_cast<double>(history.velocity(from_ms(s.velocity_window_ms), low).y());
     if (begins_mmps > kBeginsMmps) {
         rise.refusal = {"goes on with the motion before", begins_mmps, kBeginsMmps};
+        return rise;
+    }
+    // Whatever hands do next to a face or on the way to it, they do not show themselves.
+    const Carriage held =
+        carriage(history, std::max<std::size_t>(history.count_within(from_ms(s.raise_still_ms)), 1),
+                 Vec3f::UnitY());
+    if (held.extension >= 0.0 && !held.is_upright()) {
+        rise.refusal = {"it is not held up flat", held.extension, 0.0};
     }
     return rise;
 }

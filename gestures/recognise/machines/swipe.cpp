@@ -270,6 +270,9 @@ Refusal SwipeMachine::objection(const Context& c, bool stops) const {
     if (std::abs(held.bend_deg) > s.swipe_bend_deg) {
         return {"bends", std::abs(held.bend_deg), s.swipe_bend_deg};
     }
+    if (held.grab > s.swipe_grab) {
+        return {"the hand is closed", held.grab, s.swipe_grab};
+    }
     if (!now.from_joints) {
         // Fingers blur in a stroke: those of an open hand were seen before it.
         const std::size_t until = c.history.count_within(now.stamp - stroke_.start + kSeenBefore);
@@ -284,11 +287,11 @@ Refusal SwipeMachine::objection(const Context& c, bool stops) const {
     // Sideways a palm leads or shows itself to the screen on purpose; up and down it does so
     // whenever a hand is raised or dropped, unless it is held up flat.
     const bool level = horizontal(stroke_.direction);
+    const bool shows = !held.facing_known || held.shown >= kShownFacing;
     const bool paddle = level && !points && held.leads >= s.swipe_facing;
-    const bool shows = level && !points && held.shown >= kShownFacing;
-    const bool up = !level && !points && held.shown >= kShownFacing && held.is_upright();
-    const bool back = up || (level && !points && held.leads <= -s.swipe_facing);
-    const bool carried = points || (held.facing_known && !paddle && !shows && !back);
+    const bool back =
+        !points && (level ? held.leads <= -s.swipe_facing : shows && held.is_upright());
+    const bool carried = points || !(paddle || back || (level && shows));
     const double least_mm = carried ? s.swipe_carried_length_mm
                             : back  ? s.swipe_back_length_mm
                                     : s.swipe_length_mm;

@@ -75,6 +75,18 @@ TEST(Raise, IsSentOnce) {
                 ElementsAre("raise"));
 }
 
+TEST(Raise, AHandThatIsNotHeldUpFlatIsOnItsWayElsewhere) {
+    Actor actor = raising(220);
+    actor.held = Held::palm_screen;
+    EXPECT_THAT(shown(actor).story(), ElementsAre("raise"));
+    for (const Held held : {Held::palm_down, Held::pointing_down}) {
+        actor.held = held;
+        const Stage stage = shown(actor);
+        EXPECT_THAT(stage.story(), IsEmpty());
+        EXPECT_TRUE(stage.explained("raise", "it is not held up flat"));
+    }
+}
+
 TEST(Raise, AStrokeUpIsASwipe) {
     EXPECT_THAT(shown(raising(220, 350), 60, true).story(), ElementsAre("swipe_up"));
 }

@@ -20,6 +20,7 @@ Actor swipe(float grab) {
 GestureSettings swipes() {
     GestureSettings s;
     s.push = s.pinch = s.grab = false;
+    s.swipe_grab = 1.0;  // a fist would not swipe anyway
     return s;
 }
 
