@@ -44,6 +44,7 @@ class TapMachine : public Machine<TapMachine, TapState, TapEvent> {
         std::size_t back = 0;  ///< of its sample, while no newer one has come
     };
     struct Press {
+        bool of_open_hand = false;  ///< joints only
         Bend base;  ///< before it bent
         Vec3f palm_mm = Vec3f::Zero();
         std::array<Flexion, kFingerCount> others{};

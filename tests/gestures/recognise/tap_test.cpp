@@ -70,14 +70,39 @@ TEST(Tap, AFingerThatStaysBentIsNone) {
     EXPECT_THAT(story_of(moments), IsEmpty());
 }
 
-TEST(Tap, NeedsAHandThatPoints) {
-    std::vector<Bent> moments{open_hand(0), open_hand(1000), open_hand(1120), open_hand(1250),
-                              open_hand(1900)};
-    moments[2].deg[0] = 130;
+/// An open hand whose index bends by 130 degrees in `bends_ms`, stays and straightens; the middle
+/// finger goes along by `along_deg`.
+Stage open_tap(double bends_ms, double stays_ms, double along_deg) {
+    const double down = 1000 + bends_ms;
+    std::vector<Bent> moments{open_hand(0),
+                              open_hand(1000),
+                              open_hand(down),
+                              open_hand(down + stays_ms),
+                              open_hand(down + stays_ms + 130),
+                              open_hand(down + stays_ms + 700)};
+    for (const std::size_t i : {2U, 3U}) {
+        moments[i].deg[0] = 130;
+        moments[i].deg[1] += along_deg;
+    }
     Stage stage(taps());
     play(stage, moments, 60);
-    EXPECT_THAT(stage.story(), IsEmpty());
-    EXPECT_TRUE(stage.explained("tap", "the hand does not point"));
+    return stage;
+}
+
+TEST(Tap, AnOpenHandTapsWithItsIndexAlone) {
+    EXPECT_THAT(open_tap(120, 60, 0).story(), ElementsAre("tap"));
+}
+
+TEST(Tap, FingersOfAnOpenHandFidget) {
+    const Stage slow = open_tap(500, 60, 0);
+    EXPECT_THAT(slow.story(), IsEmpty());
+    EXPECT_TRUE(slow.explained("tap", "slow for an open hand"));
+    const Stage together = open_tap(120, 60, 50);
+    EXPECT_THAT(together.story(), IsEmpty());
+    EXPECT_TRUE(together.explained("tap", "another finger of an open hand moves"));
+    const Stage mistaken = open_tap(60, 0, 0);
+    EXPECT_THAT(mistaken.story(), IsEmpty());
+    EXPECT_TRUE(mistaken.explained("tap", "too short for a finger"));
 }
 
 TEST(Tap, FingersThatGoAlongMakeSomethingElse) {
