@@ -24,12 +24,29 @@ constexpr Duration kStrengthLost = std::chrono::milliseconds{300};
 // on average. Fingers that grab close together, within 60 degrees.
 constexpr float kPointingDeg = 60.0F;
 constexpr float kFoldedDeg = 150.0F;
+// Extensions of a camera's hand that points, on average over so long.
+constexpr float kOut = 0.7F;
+constexpr float kFolded = 0.2F;
+constexpr Duration kPointsFor = std::chrono::milliseconds{200};
 // Of a hand whose thumb and index tip meet: a pinch bends the index less than the fingers beside it
 // (measured: 15..60 degrees), fingers that grab something small bend alike (5).
 constexpr float kPinchLessDeg = 10.0F;
 
 float flexion(const MotionSample& hand, Finger finger) {
     return hand.flexion[static_cast<std::size_t>(finger)].whole_deg;
+}
+
+/// A camera's hand, over a while: a fist that closes folds its index, too.
+bool seems_to_point(const MotionHistory& history) {
+    float index = 0.0F;
+    float outer = 0.0F;
+    const std::size_t count = history.count_within(kPointsFor);
+    for (std::size_t i = 0; i < count; ++i) {
+        index += history.at(i).extension[static_cast<std::size_t>(Finger::index)];
+        outer += history.at(i).outer_extension();
+    }
+    const auto n = static_cast<float>(count);
+    return count > 1 && index >= kOut * n && outer >= 0.0F && outer <= kFolded * n;
 }
 
 /// False where not all four fingers are known.
@@ -269,7 +286,8 @@ GrabMachine::Event GrabMachine::judge(const Context& c, double strength, Refusal
         refusal = {"no approach", to_ms(c.sensor - open_at_), s.grab_approach_ms};
         return Event::stale;
     }
-    if (state() == State::armed && points(c.history.newest())) {
+    const MotionSample& now = c.history.newest();
+    if (state() == State::armed && (now.from_joints ? points(now) : seems_to_point(c.history))) {
         refusal = {"the hand points", strength, s.grab_open};
         return Event::stale;
     }

@@ -197,9 +197,8 @@ TapMachine::Event TapMachine::look_for_press(const Context& c, double deg, doubl
     }
     press_ = {};
     press_.base = base;
-    press_.of_open_hand =
-        before.from_joints &&
-        static_cast<double>(before.outer_extension()) > s.tap_pointing_extension;
+    press_.of_open_hand = before.from_joints &&
+                          static_cast<double>(before.outer_extension()) > s.tap_pointing_extension;
     press_.palm_mm = before.palm_mm;
     press_.others = before.flexion;
     press_.peak_deg = deg;

@@ -45,7 +45,7 @@ class TapMachine : public Machine<TapMachine, TapState, TapEvent> {
     };
     struct Press {
         bool of_open_hand = false;  ///< joints only
-        Bend base;  ///< before it bent
+        Bend base;                  ///< before it bent
         Vec3f palm_mm = Vec3f::Zero();
         std::array<Flexion, kFingerCount> others{};
         double peak_deg = 0.0;

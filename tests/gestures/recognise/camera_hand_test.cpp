@@ -228,6 +228,32 @@ TEST(CameraHand, TipsThatComeAndGoAreNoPinch) {
     EXPECT_THAT(stage.story(), IsEmpty());
 }
 
+TEST(CameraHand, APointingHandThatBendsItsIndexDoesNotGrab) {
+    // Opens into a pointing hand, half a fist, which is a whole one while its index is bent.
+    const auto story_of = [](float index) {
+        GestureSettings settings;
+        settings.grab = true;
+        Stage stage(settings);
+        const Actor actor{{{0, at(0, 0)}, {2000, at(0, 0)}}};
+        play(stage, actor, [&](int, double ms, Hand& hand) {
+            const bool open = ms < 800.0;
+            const bool bent = ms >= 1300.0 && ms < 1600.0;
+            const float others = open ? 1.0F : 0.0F;
+            hand.finger_extension = {0.0F,
+                                     open   ? 1.0F
+                                     : bent ? 0.0F
+                                            : index,
+                                     others, others, others};
+            hand.grab_value = open ? 0.0F : bent ? 0.95F : 0.6F;
+            hand.extended_fingers = open ? 4 : 1;
+        });
+        return stage.story();
+    };
+    EXPECT_THAT(story_of(1.0F), IsEmpty());
+    // A fist that closes in two steps has its index with the others.
+    EXPECT_THAT(story_of(0.2F), ElementsAre("grab begin", "grab end"));
+}
+
 TEST(CameraHand, OneFingerThatMergesDoesNotSpoilAPinchAFistDoes) {
     for (const bool fist : {false, true}) {
         Stage stage;
