@@ -25,13 +25,16 @@ constexpr double kEnoughS = 0.1;
 constexpr double kLongestStepS = 0.1;
 
 constexpr float kSureOfSide = 0.8F;
-// The longer over the shorter hand. Two hands of one person differ by 2 %; a palm's width is
-// measured to 5 % each, and a fist's is not that of an open hand.
-constexpr float kAlike = 1.15F;
+// The longer over the shorter hand, of one person: of bones that a tracker of joints measures (up
+// to 1.06 in recordings of both hands), and of palms, which look up to 7 % too narrow in motion.
+// Beyond the last they are of two people.
+constexpr float kAlikeBones = 1.08F;
+constexpr float kAlikePalms = 1.15F;
 constexpr float kUnlike = 1.3F;
-// Who joins has elbows well within the limits, and no nearer to each other than an adult's by so
-// much.
-constexpr double kWellWithin = 0.8;
+// Who joins is well within the limits, aside as well as in height and depth, and has elbows no
+// nearer to each other than an adult's by so much.
+constexpr double kWithinAside = 0.8;
+constexpr double kWithinLevel = 0.6;
 constexpr float kElbowsApartMm = 187.0F;
 // Who has joined may stretch.
 constexpr double kStretch = 1.25;
@@ -73,6 +76,7 @@ Limb limb_of(const Hand& hand, float length_mm) noexcept {
     limb.guess = hand.chirality;
     limb.side = hand.chirality_confidence >= kSureOfSide ? hand.chirality : Chirality::unknown;
     limb.length_mm = length_mm;
+    limb.bones = hand.articulated;
     return limb;
 }
 
@@ -101,9 +105,10 @@ SameBody same_body(const GestureSettings& s, const Limb& a, const Limb& b, bool 
     const auto share = [&](float way_mm, double limit_mm) {
         return static_cast<double>(std::abs(way_mm)) / (body * limit_mm);
     };
-    const double out =
-        std::max({share(ends.x(), s.body_width_mm), share(ends.y(), s.body_height_mm),
-                  share(ends.z(), s.body_depth_mm)});
+    const double aside = share(ends.x(), s.body_width_mm);
+    const double level =
+        std::max(share(ends.y(), s.body_height_mm), share(ends.z(), s.body_depth_mm));
+    const double out = std::max(aside, level);
     // Arms may cross, elbows do not.
     if (arms && (out > (together ? kStretch : 1.0) || (sided && ends.x() < 0.0F))) {
         return SameBody::no;
@@ -114,8 +119,9 @@ SameBody same_body(const GestureSettings& s, const Limb& a, const Limb& b, bool 
     const bool crossed = sided && palms.x() < 0.0F;
     const bool narrow = arms && static_cast<double>(std::abs(ends.x())) <
                                     body * static_cast<double>(kElbowsApartMm);
-    return unlike <= kAlike && out <= kWellWithin && !crossed && !narrow ? SameBody::yes
-                                                                         : SameBody::unsure;
+    const bool alike = unlike <= (a.bones && b.bones ? kAlikeBones : kAlikePalms);
+    const bool within = aside <= kWithinAside && level <= kWithinLevel;
+    return alike && within && !crossed && !narrow ? SameBody::yes : SameBody::unsure;
 }
 
 bool same_build(const Limb& was, const Limb& is) noexcept {

@@ -28,6 +28,7 @@ struct Limb {
     Chirality side = Chirality::unknown;   ///< only where the tracker is sure
     Chirality guess = Chirality::unknown;  ///< whatever the tracker says
     float length_mm = 0.0F;                ///< of the hand; 0: not known
+    bool bones = false;                    ///< and it is that of measured bones
 };
 [[nodiscard]] Limb limb_of(const Hand& hand, float length_mm) noexcept;
 

@@ -11,10 +11,12 @@ namespace {
 
 // Doubt grows to this in so long; whoever stands beside for minutes has to fit five times as long
 // as one who has just come.
-constexpr double kMostDoubt = 4.0;
-constexpr double kDoubtMs = 1000.0;
+constexpr double kMostDoubt = 6.0;
 // A gap in the frames is no evidence.
 constexpr double kLongestStepMs = 100.0;
+
+/// An owner is kept its session from when it is gone.
+double remembered_ms(const GestureSettings& s) { return s.gone_ms + s.engage_return_ms; }
 
 }  // namespace
 
@@ -46,7 +48,7 @@ void Acquaintance::weigh(const GestureSettings& s, SameBody verdict, bool settle
             break;
         case SameBody::unsure:
             if (!in) {
-                doubt(kDoubtMs);
+                doubt(s.engage_ms);
             }
             break;
         case SameBody::yes:
@@ -64,7 +66,7 @@ double Company::note(const GestureSettings& s, std::span<const HandReport> hands
     for (const HandReport& r : hands) {
         Acquaintance& one = of(r.hand->id);
         const Limb limb = limb_of(*r.hand, r.length_mm);
-        if (one.hand_id == 0 || to_ms(now - one.seen) > s.engage_return_ms) {
+        if (one.hand_id == 0 || to_ms(now - one.seen) > remembered_ms(s)) {
             one = {};
             one.hand_id = r.hand->id;
             one.first_seen = now;
@@ -104,7 +106,7 @@ const Acquaintance* Company::before(const GestureSettings& s, const Acquaintance
     for (const Acquaintance& gone : all_) {
         const bool may_be = gone.hand_id != 0 && gone.hand_id != one.hand_id &&
                             gone.seen < one.first_seen &&
-                            to_ms(one.first_seen - gone.seen) <= s.engage_return_ms;
+                            to_ms(one.first_seen - gone.seen) <= remembered_ms(s);
         if (!may_be || !same_hand(s, gone.limb, one.limb)) {
             continue;
         }
