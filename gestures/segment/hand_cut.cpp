@@ -83,9 +83,10 @@ bool HandCut::cut(const DepthFrame& depth, const CoarseScene& coarse, const Palm
     region.score = palm.score;
     region.wrist_mm = palm.centre_mm + palm.wrist_mm * palm.arm_direction;
     if (region.area_mm2 >= static_cast<float>(settings.hand_area_min_mm2)) {
-        centre_palm(region);
+        centre_palm(palm, region);
     }
-    if (region.palm_radius_mm < kCutShare * static_cast<float>(settings.palm_radius_min_mm)) {
+    const float least = kCutShare * static_cast<float>(settings.palm_radius_min_mm);
+    if (region.palm_radius_mm < (palm.prior >= 0 ? kEdgeOnShare * least : least)) {
         clear(region);
         return false;
     }
@@ -243,7 +244,7 @@ void HandCut::paint(int component, HandRegion& region) {
                             region.x_end == grid_.inner_width || region.y_end == grid_.inner_height;
 }
 
-void HandCut::centre_palm(HandRegion& region) {
+void HandCut::centre_palm(const PalmCandidate& palm, HandRegion& region) {
     // The circle is inscribed in the hand alone, so its distances are measured anew: the arm that
     // the hand was cut from would widen it.
     const Box box{region.x_begin, region.y_begin, region.x_end, region.y_end};
@@ -292,14 +293,22 @@ void HandCut::centre_palm(HandRegion& region) {
     const Box near{std::max(box.x_begin, px - around), std::max(box.y_begin, py - around),
                    std::min(box.x_end, px + around + 1), std::min(box.y_end, py + around + 1)};
     float best = 0.0F;
+    float widest = 0.0F;
     ridge_.clear();
     for (int y = near.y_begin; y < near.y_end; ++y) {
         for (int x = near.x_begin; x < near.x_end; ++x) {
             const int i = grid_.index(x, y);
             if (labels_[static_cast<std::size_t>(i)] == region.label &&
                 radius_px(i) > kRidge * peak) {
-                ridge_.push_back({x, y, exact_radius_px(x, y)});
-                best = std::max(best, ridge_.back().radius_px);
+                const float radius = exact_radius_px(x, y);
+                float worth = radius;
+                if (palm.prior >= 0) {
+                    const Vec3f d = grid_.point(i) - palm.expected_mm;
+                    worth *= 1.0F - kWander * std::min(1.0F, d.head<2>().norm() / palm.radius_mm);
+                }
+                ridge_.push_back({x, y, worth});
+                best = std::max(best, worth);
+                widest = std::max(widest, radius);
             }
         }
     }
@@ -307,7 +316,7 @@ void HandCut::centre_palm(HandRegion& region) {
     Vec2f centre = Vec2f::Zero();
     float weight = 0.0F;
     for (const RidgePoint& p : ridge_) {
-        const float excess = p.radius_px - kPlateau * best;
+        const float excess = p.worth_px - kPlateau * best;
         if (excess > 0.0F) {
             centre += excess * Vec2f(static_cast<float>(p.x), static_cast<float>(p.y));
             weight += excess;
@@ -315,7 +324,7 @@ void HandCut::centre_palm(HandRegion& region) {
     }
     region.palm_px = weight > 0.0F ? Vec2f(centre / weight)
                                    : Vec2f(static_cast<float>(px), static_cast<float>(py));
-    region.palm_radius_px = best > 0.0F ? best : peak;
+    region.palm_radius_px = widest > 0.0F ? widest : peak;
     const float peak_mm = grid_.z[static_cast<std::size_t>(peak_pixel)];
     region.palm_radius_mm = region.palm_radius_px * grid_.pitch_mm(peak_mm);
 

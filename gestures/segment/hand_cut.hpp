@@ -54,7 +54,7 @@ class HandCut {
     };
     struct RidgePoint {
         int x = 0, y = 0;
-        float radius_px = 0.0F;
+        float worth_px = 0.0F;  ///< of the circle there: its radius, less where none is expected
     };
 
     Box mark_coarse(const CoarseScene& coarse, const PalmCandidate& palm);
@@ -64,7 +64,7 @@ class HandCut {
                                    const Box& box) const;
     void paint(int component, HandRegion& region);
     void clear(const HandRegion& region);
-    void centre_palm(HandRegion& region);
+    void centre_palm(const PalmCandidate& palm, HandRegion& region);
     [[nodiscard]] float exact_radius_px(int x, int y) const;
     [[nodiscard]] float skin_mm(const HandRegion& region, float otherwise) const;
 

@@ -63,6 +63,16 @@ class Parts {
     [[nodiscard]] float radius_mm(const Grid& grid, int i) const noexcept {
         return radius_px(i) * grid.pitch_mm(grid.z[static_cast<std::size_t>(i)]);
     }
+    /// Whether a pixel is on a middle line of its surface: no neighbour is clearly farther from the
+    /// rim.
+    [[nodiscard]] bool ridge(const Grid& grid, int i) const noexcept {
+        constexpr int kSlope = 3;  // of kChamferUnit, so that a cone has a middle line, too
+        const std::uint16_t* const n = nearness_.data() + i;
+        const int w = grid.width;
+        const int deepest =
+            std::min({n[-w - 1], n[-w], n[-w + 1], n[-1], n[1], n[w - 1], n[w], n[w + 1]});
+        return n[0] - deepest <= kSlope;
+    }
     [[nodiscard]] std::span<const Body> bodies() const noexcept { return bodies_; }
 
     static constexpr int kPartsMax = 32;

@@ -15,6 +15,8 @@ constexpr float kWidthBelowMm = 14.0F;
 /// A wider end is no fingertip, mm: two fingers that touch are 34.
 constexpr float kTipWidthMaxMm = 31.0F;
 constexpr float kTipWidthMinMm = 4.0F;
+/// A tip of this prominence is a finger's, whatever depth its rim has, mm.
+constexpr float kClearTipMm = 30.0F;
 /// Skin within this of an outline pixel gives the depth there, grid px: the pixel itself may mix
 /// finger and background.
 constexpr int kSkinReach = 2;
@@ -37,6 +39,12 @@ constexpr float kPadBelowMm = 11.0F;
 /// Two fingers that have met, or lie together, are no wider than this, mm.
 constexpr float kWideTipMaxMm = 60.0F;
 constexpr float kTwoPi = 6.2831853F;
+
+/// Distance across the line of sight of two points of one finger, mm.
+float seen_width(const Vec3f& a, const Vec3f& b) {
+    const Vec2f rays = a.head<2>() / a.z() - b.head<2>() / b.z();
+    return std::min(a.z(), b.z()) * rays.norm();
+}
 
 std::size_t reach_bin(const Vec3f& v) {
     const float turn = std::atan2(v.y(), v.x()) / kTwoPi + 0.5F;
@@ -183,7 +191,12 @@ void FingerReader::find_tips(const HandRegion& region, float tip_prominence_mm,
         while (after < n && at(k + after) > level) {
             ++after;
         }
-        const float width = (point(k - before) - point(k + after)).norm();
+        // At its rim the skin's depth may be mixed with that of what lies behind. A finger that
+        // stands out is not wider for it; what hardly does, or ends within a pixel, may be nothing
+        // but such depth.
+        const bool clear = prominence > kClearTipMm && std::min(before, after) > 1;
+        const float width = clear ? seen_width(point(k - before), point(k + after))
+                                  : (point(k - before) - point(k + after)).norm();
         if (width > kTipWidthMaxMm && width < kWideTipMaxMm && out.wide_count < kTipsMax) {
             out.wide_mm[out.wide_count++] = point(k);
         }
