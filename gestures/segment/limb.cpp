@@ -37,6 +37,11 @@ void Limb::take(const Grid& grid, const Parts& parts, const Part& part) {
     std::size_t next = 0;
     for (std::size_t k = 0; k < pixels.size(); ++k) {
         const int i = pixels[k];
+        const bool sampled = k == next;
+        const bool ridge = parts.ridge(i);
+        if (!sampled && !ridge) {
+            continue;
+        }
         if (i >= row_end) {
             const int y = grid.y_of(i);  // a division, so once a row
             row_begin = grid.index(0, y);
@@ -46,18 +51,12 @@ void Limb::take(const Grid& grid, const Parts& parts, const Part& part) {
         const int x = i - row_begin;
         const float pitch = grid.pitch_mm(grid.z[static_cast<std::size_t>(i)]);
         const float radius = parts.radius_px(i) * pitch;
-        if (radius < kFingerRadiusMm && parts.ridge(grid, i)) {
-            ridges_.push_back({grid.point(i), 2.0F * radius * pitch});
-        }
-        const bool thick = radius >= thick_mm_;
-        const bool sampled = k == next;
-        if (!thick && !sampled) {
-            continue;
-        }
         const Sample s{grid.point(i), radius, weight * pitch * pitch,
                        border_row || x <= 1 || x >= grid.inner_width - 2, i};
-        if (thick) {
+        if (ridge && radius >= thick_mm_) {
             thick_.push_back(s);
+        } else if (ridge && radius < kFingerRadiusMm) {
+            ridges_.push_back({s.p_mm, 2.0F * radius * pitch});
         }
         if (sampled) {
             samples_.push_back(s);

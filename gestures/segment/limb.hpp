@@ -12,8 +12,8 @@ namespace xtrack::segment {
 /// Thinner than this is a finger: inscribed radius, mm.
 inline constexpr float kFingerRadiusMm = 11.5F;
 
-/// A part as a search for palms looks at it: some of its pixels, evenly, and every one that may be
-/// a palm's centre or a finger's middle line.
+/// A part as a search for palms looks at it: some of its pixels, evenly, and those on its middle
+/// lines, where fingers are and the centres of palms may be.
 class Limb {
  public:
     /// A pixel of the part.

@@ -21,6 +21,9 @@ constexpr double kFrontMaxMm = 60.0;
 /// A hand before its own body is one surface with it, by way of the arm; a step of this much ends
 /// it all the same, mm. Fingers before their palm make smaller ones.
 constexpr float kOcclusionMm = 60.0F;
+/// A middle line falls toward a finger's tip by this a pixel at most; an outline's slope is
+/// kChamferUnit.
+constexpr int kRidgeSlope = 3;
 /// Surfaces are counted in 16 bits.
 constexpr int kLabelsMax = 65535;
 
@@ -35,6 +38,7 @@ void Parts::create(const Grid& grid) {
     has_core_.reserve(n + 1);
     label_.assign(n, 0);
     nearness_.assign(n, 0);
+    ridge_.assign(n, 0);
     ball_.assign(n, 0);
     part_of_.assign(n, kNone);
     pixels_.reserve(n);
@@ -46,6 +50,7 @@ void Parts::find(const Grid& grid, std::span<const float> foreground, float thic
                  float area_min_mm2) {
     label_surfaces(grid, foreground, area_min_mm2);
     measure_distance(grid);
+    mark_ridges(grid);
     mark_body(grid, thick_mm);
     collect(grid, area_min_mm2);
 }
@@ -122,6 +127,23 @@ void Parts::measure_distance(const Grid& grid) {
         }
     }
     spread(grid, box_, nearness_);
+}
+
+void Parts::mark_ridges(const Grid& grid) {
+    const std::ptrdiff_t w = grid.width;
+    for (int y = box_.y_begin; y < box_.y_end; ++y) {
+        const int begin = grid.index(box_.x_begin, y);
+        const std::uint16_t* const n = nearness_.data() + begin;
+        std::uint16_t* const out = ridge_.data() + begin;
+        for (int x = 0; x < box_.width(); ++x) {
+            const auto least = [&](std::ptrdiff_t row) {
+                const std::uint16_t* const r = n + x + row;
+                return std::min(std::min(r[-1], r[0]), r[1]);
+            };
+            const std::uint16_t deepest = std::min(std::min(least(-w), least(0)), least(w));
+            out[x] = n[x] - deepest <= kRidgeSlope ? std::uint16_t{1} : std::uint16_t{0};
+        }
+    }
 }
 
 void Parts::mark_body(const Grid& grid, float thick_mm) {
