@@ -35,6 +35,8 @@ void HandCut::create(const Rig& rig, Size size, const Grid& coarse, float near_m
     rows_.assign(coarse.size(), kNowhere);
     depths_.assign(coarse.size(), kNowhere);
     inside_.assign(grid_.size(), 0);
+    low_mm_.assign(static_cast<std::size_t>(grid_.width), 0.0F);
+    high_mm_.assign(static_cast<std::size_t>(grid_.width), 0.0F);
     labels_.assign(grid_.size(), 0);
     nearness_.assign(grid_.size(), 0);
     rim_x_.reserve(grid_.size());
@@ -172,24 +174,39 @@ void HandCut::find_pixels(const CoarseScene& coarse, const PalmCandidate& palm, 
                           const Box& box) {
     const float reach = reach_limit_mm(palm.radius_mm);
     const int ratio = 1 << ratio_shift_;
+    const int width = box.width();
+    // One row of the coarse grid, each pixel as often as the fine one has it.
+    float* const low = low_mm_.data();
+    float* const high = high_mm_.data();
+    int row_before = -1;
     for (int y = box.y_begin; y < box.y_end; ++y) {
-        const Depths* const row =
-            depths_.data() + coarse.grid.index(cells.x_begin, y >> ratio_shift_);
+        const int coarse_y = y >> ratio_shift_;
+        const Depths* const row = depths_.data() + coarse.grid.index(cells.x_begin, coarse_y);
+        if (coarse_y != row_before) {
+            for (int x = 0; x < width; ++x) {
+                low[x] = row[x >> ratio_shift_].low_mm;
+                high[x] = row[x >> ratio_shift_].high_mm;
+            }
+            row_before = coarse_y;
+        }
         const int begin = grid_.index(box.x_begin, y);
-        const int end = begin + box.width();
+        const float* const z = grid_.z.data() + begin;
+        std::uint8_t* const in = inside_.data() + begin;
+        for (int x = 0; x < width; ++x) {
+            in[x] = (z[x] > 0.0F) & (z[x] > low[x]) & (z[x] <= high[x]) ? std::uint8_t{1}
+                                                                        : std::uint8_t{0};
+        }
         for (int cell = 0; cell < cells.width(); ++cell) {
-            const Depths wanted = row[cell];
-            const int first = begin + cell * ratio;
-            for (int i = first; i < std::min(first + ratio, end); ++i) {
-                const auto k = static_cast<std::size_t>(i);
-                const float z = grid_.z[k];
-                bool in = (z > 0.0F) & (z > wanted.low_mm) & (z <= wanted.high_mm);
-                if (in && !wanted.whole) {
-                    const Vec3f d = grid_.point(i) - palm.centre_mm;
-                    in = d.dot(palm.arm_direction) <= palm.wrist_mm &&
-                         d.squaredNorm() <= reach * reach;
+            if (row[cell].whole || row[cell].high_mm <= 0.0F) {
+                continue;
+            }
+            for (int x = cell * ratio; x < std::min((cell + 1) * ratio, width); ++x) {
+                if (in[x] != 0) {
+                    const Vec3f d = grid_.point(begin + x) - palm.centre_mm;
+                    const bool near = d.dot(palm.arm_direction) <= palm.wrist_mm &&
+                                      d.squaredNorm() <= reach * reach;
+                    in[x] = near ? std::uint8_t{1} : std::uint8_t{0};
                 }
-                inside_[k] = in ? 1 : 0;
             }
         }
     }

@@ -76,6 +76,7 @@ class HandCut {
     std::vector<Depths> own_;     ///< of the hand in a coarse pixel; kNowhere between calls
     std::vector<Depths> rows_;    ///< in it and its neighbours along the row
     std::vector<Depths> depths_;  ///< in it and all its neighbours, with what noise may add
+    std::vector<float> low_mm_, high_mm_;  ///< of one row, by pixel of the fine grid
     std::vector<std::uint8_t> inside_;
     std::vector<std::uint8_t> labels_;
     std::vector<std::uint16_t> nearness_;          ///< to the rim of the hand

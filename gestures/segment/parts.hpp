@@ -63,8 +63,8 @@ class Parts {
     [[nodiscard]] float radius_mm(const Grid& grid, int i) const noexcept {
         return radius_px(i) * grid.pitch_mm(grid.z[static_cast<std::size_t>(i)]);
     }
-    /// Whether a pixel of a part is on a middle line of its surface: no neighbour is clearly farther
-    /// from the rim.
+    /// Whether a pixel of a part is on a middle line of its surface: no neighbour is clearly
+    /// farther from the rim.
     [[nodiscard]] bool ridge(int i) const noexcept {
         return ridge_[static_cast<std::size_t>(i)] != 0;
     }
