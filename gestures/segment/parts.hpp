@@ -92,6 +92,7 @@ class Parts {
     Components components_;
     std::vector<Piece> pieces_;
     std::vector<std::uint8_t> has_core_;   ///< by label: somewhere it is thick
+    bool any_core_ = false;                ///< something is thick
     Box box_;                              ///< of all surfaces
     std::vector<std::uint16_t> label_;     ///< surface of a pixel, 0 = none
     std::vector<std::uint16_t> nearness_;  ///< to the rim of the surface
