@@ -64,6 +64,7 @@ bool HandCut::cut(const DepthFrame& depth, const CoarseScene& coarse, const Palm
     if (painted_count_ == painted_.size()) {
         return false;
     }
+    set_ends(palm, coarse.expected);
     const Box cells = mark_coarse(coarse, palm);
     const int ratio = 1 << ratio_shift_;
     const Box box = grid_.grown(
@@ -96,6 +97,19 @@ bool HandCut::cut(const DepthFrame& depth, const CoarseScene& coarse, const Palm
     return true;
 }
 
+void HandCut::set_ends(const PalmCandidate& palm, std::span<const PalmPrior> expected) {
+    ends_[0] = {palm.arm_direction, palm.wrist_mm};
+    end_count_ = 1;
+    for (std::size_t m = 0; m < expected.size() && end_count_ < ends_.size(); ++m) {
+        const Vec3f d = expected[m].palm_mm - palm.centre_mm;
+        const float distance = d.norm();
+        // What is nearer than a palm is wide is no other hand, or was none.
+        if (palm.prior >= 0 && palm.prior != static_cast<int>(m) && distance > palm.radius_mm) {
+            ends_[end_count_++] = {d / distance, 0.5F * distance};
+        }
+    }
+}
+
 /// Where the hand is on the coarse grid, and how deep round each of its pixels.
 /// @return the box of coarse pixels that may hold some of it
 Box HandCut::mark_coarse(const CoarseScene& coarse, const PalmCandidate& palm) {
@@ -111,7 +125,7 @@ Box HandCut::mark_coarse(const CoarseScene& coarse, const PalmCandidate& palm) {
     for (const int i : coarse.parts.pixels(part)) {
         const Vec3f d = grid.point(i) - palm.centre_mm;
         // How much farther than wrist and reach allow.
-        const float beyond = std::max(d.dot(palm.arm_direction) - palm.wrist_mm, d.norm() - reach);
+        const float beyond = std::max(beyond_ends(d), d.norm() - reach);
         if (beyond > pixel) {
             continue;
         }
@@ -203,8 +217,7 @@ void HandCut::find_pixels(const CoarseScene& coarse, const PalmCandidate& palm, 
             for (int x = cell * ratio; x < std::min((cell + 1) * ratio, width); ++x) {
                 if (in[x] != 0) {
                     const Vec3f d = grid_.point(begin + x) - palm.centre_mm;
-                    const bool near = d.dot(palm.arm_direction) <= palm.wrist_mm &&
-                                      d.squaredNorm() <= reach * reach;
+                    const bool near = beyond_ends(d) <= 0.0F && d.squaredNorm() <= reach * reach;
                     in[x] = near ? std::uint8_t{1} : std::uint8_t{0};
                 }
             }

@@ -91,8 +91,9 @@ void Segmenter::choose(const DepthFrame& depth, std::span<const PalmPrior> prior
     const CoarseScene scene{
         grid_, parts_,
         settings_.learn_background ? background_.depth_mm() : std::span<const float>{},
-        static_cast<float>(settings_.background_margin_mm)};
+        static_cast<float>(settings_.background_margin_mm), priors};
     std::array<int, kMaxHands> part_of_region{};
+    std::array<int, kMaxHands> prior_of_region{};
     for (const PalmCandidate& c : candidates_) {
         if (count_ >= std::min<int>(settings_.max_hands, static_cast<int>(kMaxHands))) {
             break;
@@ -108,8 +109,10 @@ void Segmenter::choose(const DepthFrame& depth, std::span<const PalmPrior> prior
             const HandRegion& other = regions_[static_cast<std::size_t>(k)];
             const Vec3f d = c.centre_mm - other.palm_mm;
             free &= d.norm() > other.palm_radius_mm + c.radius_mm;
-            // The other end of the same arm is no second hand.
-            free &= c.part != part_of_region[static_cast<std::size_t>(k)];
+            // The other end of the same arm is no second hand, unless it was one before they met.
+            const int prior = prior_of_region[static_cast<std::size_t>(k)];
+            const bool both_known = c.prior >= 0 && prior >= 0 && c.prior != prior;
+            free &= both_known || c.part != part_of_region[static_cast<std::size_t>(k)];
             free &= c.prior >= 0 || may_be_second(c, other.palm_mm);
         }
         if (!free) {
@@ -120,6 +123,7 @@ void Segmenter::choose(const DepthFrame& depth, std::span<const PalmPrior> prior
         }
         if (cut_.cut(depth, scene, c, settings_, regions_[static_cast<std::size_t>(count_)])) {
             part_of_region[static_cast<std::size_t>(count_)] = c.part;
+            prior_of_region[static_cast<std::size_t>(count_)] = c.prior;
             ++count_;
         }
     }
