@@ -40,6 +40,25 @@ Vec2f undistorted(const Pinhole& camera, double x, double y) {
     return {static_cast<float>(u), static_cast<float>(v)};
 }
 
+/// The first pixel without depth from one on; `end` where none before that is.
+int next_empty(const float* z, int i, int end) {
+    // Most have depth, so many are looked at at once.
+    constexpr int kAtOnce = 8;
+    for (; i + kAtOnce <= end; i += kAtOnce) {
+        bool any = false;
+        for (int k = 0; k < kAtOnce; ++k) {
+            any |= z[i + k] <= 0.0F;
+        }
+        if (any) {
+            break;
+        }
+    }
+    while (i < end && z[i] > 0.0F) {
+        ++i;
+    }
+    return i;
+}
+
 }  // namespace
 
 void Grid::create(const Rig& rig, Size size, int block_scale, int step_scale) {
@@ -125,11 +144,9 @@ void Grid::close_pinholes(const Box& box, const std::vector<float>& from,
         const int begin = index(box.x_begin, y);
         const int end = index(box.x_end, y);
         std::copy(from.begin() + begin, from.begin() + end, to.begin() + begin);
-        for (int i = begin; i < end; ++i) {
+        for (int i = next_empty(from.data(), begin, end); i < end;
+             i = next_empty(from.data(), i + 1, end)) {
             const float* here = from.data() + i;
-            if (here[0] > 0.0F) {
-                continue;
-            }
             // A pinhole has skin on two of its four sides at least; most empty pixels have none.
             const int sides = (here[-1] > 0.0F ? 1 : 0) + (here[1] > 0.0F ? 1 : 0) +
                               (here[-width] > 0.0F ? 1 : 0) + (here[width] > 0.0F ? 1 : 0);

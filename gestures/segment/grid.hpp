@@ -61,6 +61,12 @@ class Grid {
     [[nodiscard]] int index(int x, int y) const noexcept { return (y + kPad) * width + x + kPad; }
     [[nodiscard]] int x_of(int i) const noexcept { return i % width - kPad; }
     [[nodiscard]] int y_of(int i) const noexcept { return i / width - kPad; }
+    /// Whether a pixel is in the outermost row or column.
+    [[nodiscard]] bool at_border(int i) const noexcept {
+        const int x = x_of(i);
+        const int y = y_of(i);
+        return x == 0 || y == 0 || x == inner_width - 1 || y == inner_height - 1;
+    }
     [[nodiscard]] Vec3f point(int i) const noexcept {
         const auto k = static_cast<std::size_t>(i);
         return {ray[k].x() * z[k], ray[k].y() * z[k], z[k]};

@@ -35,6 +35,8 @@ void HandCut::create(const Rig& rig, Size size, const Grid& coarse, float near_m
     rows_.assign(coarse.size(), kNowhere);
     depths_.assign(coarse.size(), kNowhere);
     inside_.assign(grid_.size(), 0);
+    low_mm_.assign(static_cast<std::size_t>(grid_.width), 0.0F);
+    high_mm_.assign(static_cast<std::size_t>(grid_.width), 0.0F);
     labels_.assign(grid_.size(), 0);
     nearness_.assign(grid_.size(), 0);
     rim_x_.reserve(grid_.size());
@@ -62,6 +64,7 @@ bool HandCut::cut(const DepthFrame& depth, const CoarseScene& coarse, const Palm
     if (painted_count_ == painted_.size()) {
         return false;
     }
+    set_ends(palm, coarse.expected);
     const Box cells = mark_coarse(coarse, palm);
     const int ratio = 1 << ratio_shift_;
     const Box box = grid_.grown(
@@ -83,14 +86,28 @@ bool HandCut::cut(const DepthFrame& depth, const CoarseScene& coarse, const Palm
     region.score = palm.score;
     region.wrist_mm = palm.centre_mm + palm.wrist_mm * palm.arm_direction;
     if (region.area_mm2 >= static_cast<float>(settings.hand_area_min_mm2)) {
-        centre_palm(region);
+        centre_palm(palm, region);
     }
-    if (region.palm_radius_mm < kCutShare * static_cast<float>(settings.palm_radius_min_mm)) {
+    const float least = kCutShare * static_cast<float>(settings.palm_radius_min_mm);
+    if (region.palm_radius_mm < (palm.prior >= 0 ? kEdgeOnShare * least : least)) {
         clear(region);
         return false;
     }
     painted_[painted_count_++] = region;
     return true;
+}
+
+void HandCut::set_ends(const PalmCandidate& palm, std::span<const PalmPrior> expected) {
+    ends_[0] = {palm.arm_direction, palm.wrist_mm};
+    end_count_ = 1;
+    for (std::size_t m = 0; m < expected.size() && end_count_ < ends_.size(); ++m) {
+        const Vec3f d = expected[m].palm_mm - palm.centre_mm;
+        const float distance = d.norm();
+        // What is nearer than a palm is wide is no other hand, or was none.
+        if (palm.prior >= 0 && palm.prior != static_cast<int>(m) && distance > palm.radius_mm) {
+            ends_[end_count_++] = {d / distance, 0.5F * distance};
+        }
+    }
 }
 
 /// Where the hand is on the coarse grid, and how deep round each of its pixels.
@@ -108,7 +125,7 @@ Box HandCut::mark_coarse(const CoarseScene& coarse, const PalmCandidate& palm) {
     for (const int i : coarse.parts.pixels(part)) {
         const Vec3f d = grid.point(i) - palm.centre_mm;
         // How much farther than wrist and reach allow.
-        const float beyond = std::max(d.dot(palm.arm_direction) - palm.wrist_mm, d.norm() - reach);
+        const float beyond = std::max(beyond_ends(d), d.norm() - reach);
         if (beyond > pixel) {
             continue;
         }
@@ -171,24 +188,38 @@ void HandCut::find_pixels(const CoarseScene& coarse, const PalmCandidate& palm, 
                           const Box& box) {
     const float reach = reach_limit_mm(palm.radius_mm);
     const int ratio = 1 << ratio_shift_;
+    const int width = box.width();
+    // One row of the coarse grid, each pixel as often as the fine one has it.
+    float* const low = low_mm_.data();
+    float* const high = high_mm_.data();
+    int row_before = -1;
     for (int y = box.y_begin; y < box.y_end; ++y) {
-        const Depths* const row =
-            depths_.data() + coarse.grid.index(cells.x_begin, y >> ratio_shift_);
+        const int coarse_y = y >> ratio_shift_;
+        const Depths* const row = depths_.data() + coarse.grid.index(cells.x_begin, coarse_y);
+        if (coarse_y != row_before) {
+            for (int x = 0; x < width; ++x) {
+                low[x] = row[x >> ratio_shift_].low_mm;
+                high[x] = row[x >> ratio_shift_].high_mm;
+            }
+            row_before = coarse_y;
+        }
         const int begin = grid_.index(box.x_begin, y);
-        const int end = begin + box.width();
+        const float* const z = grid_.z.data() + begin;
+        std::uint8_t* const in = inside_.data() + begin;
+        for (int x = 0; x < width; ++x) {
+            in[x] = (z[x] > 0.0F) & (z[x] > low[x]) & (z[x] <= high[x]) ? std::uint8_t{1}
+                                                                        : std::uint8_t{0};
+        }
         for (int cell = 0; cell < cells.width(); ++cell) {
-            const Depths wanted = row[cell];
-            const int first = begin + cell * ratio;
-            for (int i = first; i < std::min(first + ratio, end); ++i) {
-                const auto k = static_cast<std::size_t>(i);
-                const float z = grid_.z[k];
-                bool in = (z > 0.0F) & (z > wanted.low_mm) & (z <= wanted.high_mm);
-                if (in && !wanted.whole) {
-                    const Vec3f d = grid_.point(i) - palm.centre_mm;
-                    in = d.dot(palm.arm_direction) <= palm.wrist_mm &&
-                         d.squaredNorm() <= reach * reach;
+            if (row[cell].whole || row[cell].high_mm <= 0.0F) {
+                continue;
+            }
+            for (int x = cell * ratio; x < std::min((cell + 1) * ratio, width); ++x) {
+                if (in[x] != 0) {
+                    const Vec3f d = grid_.point(begin + x) - palm.centre_mm;
+                    const bool near = beyond_ends(d) <= 0.0F && d.squaredNorm() <= reach * reach;
+                    in[x] = near ? std::uint8_t{1} : std::uint8_t{0};
                 }
-                inside_[k] = in ? 1 : 0;
             }
         }
     }
@@ -243,7 +274,7 @@ void HandCut::paint(int component, HandRegion& region) {
                             region.x_end == grid_.inner_width || region.y_end == grid_.inner_height;
 }
 
-void HandCut::centre_palm(HandRegion& region) {
+void HandCut::centre_palm(const PalmCandidate& palm, HandRegion& region) {
     // The circle is inscribed in the hand alone, so its distances are measured anew: the arm that
     // the hand was cut from would widen it.
     const Box box{region.x_begin, region.y_begin, region.x_end, region.y_end};
@@ -292,14 +323,22 @@ void HandCut::centre_palm(HandRegion& region) {
     const Box near{std::max(box.x_begin, px - around), std::max(box.y_begin, py - around),
                    std::min(box.x_end, px + around + 1), std::min(box.y_end, py + around + 1)};
     float best = 0.0F;
+    float widest = 0.0F;
     ridge_.clear();
     for (int y = near.y_begin; y < near.y_end; ++y) {
         for (int x = near.x_begin; x < near.x_end; ++x) {
             const int i = grid_.index(x, y);
             if (labels_[static_cast<std::size_t>(i)] == region.label &&
                 radius_px(i) > kRidge * peak) {
-                ridge_.push_back({x, y, exact_radius_px(x, y)});
-                best = std::max(best, ridge_.back().radius_px);
+                const float radius = exact_radius_px(x, y);
+                float worth = radius;
+                if (palm.prior >= 0) {
+                    const Vec3f d = grid_.point(i) - palm.expected_mm;
+                    worth *= 1.0F - kWander * std::min(1.0F, d.head<2>().norm() / palm.radius_mm);
+                }
+                ridge_.push_back({x, y, worth});
+                best = std::max(best, worth);
+                widest = std::max(widest, radius);
             }
         }
     }
@@ -307,7 +346,7 @@ void HandCut::centre_palm(HandRegion& region) {
     Vec2f centre = Vec2f::Zero();
     float weight = 0.0F;
     for (const RidgePoint& p : ridge_) {
-        const float excess = p.radius_px - kPlateau * best;
+        const float excess = p.worth_px - kPlateau * best;
         if (excess > 0.0F) {
             centre += excess * Vec2f(static_cast<float>(p.x), static_cast<float>(p.y));
             weight += excess;
@@ -315,7 +354,7 @@ void HandCut::centre_palm(HandRegion& region) {
     }
     region.palm_px = weight > 0.0F ? Vec2f(centre / weight)
                                    : Vec2f(static_cast<float>(px), static_cast<float>(py));
-    region.palm_radius_px = best > 0.0F ? best : peak;
+    region.palm_radius_px = widest > 0.0F ? widest : peak;
     const float peak_mm = grid_.z[static_cast<std::size_t>(peak_pixel)];
     region.palm_radius_mm = region.palm_radius_px * grid_.pitch_mm(peak_mm);
 

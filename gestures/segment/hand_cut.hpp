@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -24,6 +25,7 @@ struct CoarseScene {
     const Parts& parts;
     std::span<const float> background_mm;  ///< by grid index; 0 = not known
     float margin_mm = 0.0F;                ///< what is nearer than the background by more is not it
+    std::span<const PalmPrior> expected;   ///< a hand ends halfway to the palm of another
 };
 
 /// Cuts hands out of a depth image on the fine grid. Where one is has been found on the coarse
@@ -54,9 +56,24 @@ class HandCut {
     };
     struct RidgePoint {
         int x = 0, y = 0;
-        float radius_px = 0.0F;
+        float worth_px = 0.0F;  ///< of the circle there: its radius, less where none is expected
     };
 
+    /// A plane at which a hand ends, from its palm's centre.
+    struct End {
+        Vec3f direction = Vec3f::Zero();  ///< unit, out of the hand
+        float distance_mm = 0.0F;
+    };
+
+    void set_ends(const PalmCandidate& palm, std::span<const PalmPrior> expected);
+    /// How much farther from the palm's centre than the ends allow; negative: less.
+    [[nodiscard]] float beyond_ends(const Vec3f& from_palm) const noexcept {
+        float most = from_palm.dot(ends_[0].direction) - ends_[0].distance_mm;
+        for (std::size_t k = 1; k < end_count_; ++k) {
+            most = std::max(most, from_palm.dot(ends_[k].direction) - ends_[k].distance_mm);
+        }
+        return most;
+    }
     Box mark_coarse(const CoarseScene& coarse, const PalmCandidate& palm);
     void find_pixels(const CoarseScene& coarse, const PalmCandidate& palm, const Box& cells,
                      const Box& box);
@@ -64,7 +81,7 @@ class HandCut {
                                    const Box& box) const;
     void paint(int component, HandRegion& region);
     void clear(const HandRegion& region);
-    void centre_palm(HandRegion& region);
+    void centre_palm(const PalmCandidate& palm, HandRegion& region);
     [[nodiscard]] float exact_radius_px(int x, int y) const;
     [[nodiscard]] float skin_mm(const HandRegion& region, float otherwise) const;
 
@@ -73,9 +90,12 @@ class HandCut {
     Grid grid_;
     Components components_;
     static constexpr Depths kNowhere{1e9F, 0.0F, false};
+    std::array<End, kMaxHands + 1> ends_{};  ///< the wrist, and towards other hands
+    std::size_t end_count_ = 0;
     std::vector<Depths> own_;     ///< of the hand in a coarse pixel; kNowhere between calls
     std::vector<Depths> rows_;    ///< in it and its neighbours along the row
     std::vector<Depths> depths_;  ///< in it and all its neighbours, with what noise may add
+    std::vector<float> low_mm_, high_mm_;  ///< of one row, by pixel of the fine grid
     std::vector<std::uint8_t> inside_;
     std::vector<std::uint8_t> labels_;
     std::vector<std::uint16_t> nearness_;          ///< to the rim of the hand

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <span>
-#include <vector>
 
+#include <xtrack/hand.hpp>
 #include <xtrack/tracker_settings.hpp>
 
 #include "gestures/segment/grid.hpp"
+#include "gestures/segment/limb.hpp"
 #include "gestures/segment/parts.hpp"
 
 namespace xtrack::segment {
@@ -26,17 +28,28 @@ struct PalmCandidate {
     Vec3f centre_mm = Vec3f::Zero();
     Vec3f arm_direction = Vec3f::Zero();
     bool arm_seen = false;
-    float wrist_mm = 0.0F;  ///< distance from the centre to the wrist along arm_direction
-    float reach_mm = 0.0F;  ///< how far the hand goes from the centre
-    float score = 0.0F;     ///< 0..1
-    float rank = 0.0F;      ///< the score before it was cut to 0..1: orders candidates
-    int prior = -1;         ///< the expected palm it agrees with
+    float wrist_mm = 0.0F;   ///< distance from the centre to the wrist along arm_direction
+    float reach_mm = 0.0F;   ///< how far the hand goes from the centre
+    float score = 0.0F;      ///< 0..1
+    float rank = 0.0F;       ///< the score before it was cut to 0..1: orders candidates
+    int prior = -1;          ///< the expected palm it agrees with
+    float agreement = 0.0F;  ///< 1 where that is, 0 as far from it as may be
+    Vec3f expected_mm = Vec3f::Zero();  ///< where that is
 };
 
-inline constexpr int kCandidatesMax = 6;
+/// Of a part: near each of kMaxHands priors, and at the ends of the part.
+inline constexpr int kCandidatesMax = static_cast<int>(kMaxHands) + 6;
+
+/// A palm that is followed may turn its edge: it may then be smaller by this than a new one.
+inline constexpr float kEdgeOnShare = 0.8F;
+
+/// Along a flat hand, fingers together, a palm's circle is nearly as wide everywhere: one that is a
+/// radius off where the palm is expected must be wider by this share.
+inline constexpr float kWander = 0.04F;
 
 /// Looks for palms on one part: the thickest place near each of its ends (the two farthest apart,
-/// the one farthest from the body, the nearest to the camera) and near every expected palm.
+/// the one farthest from the body, the nearest to the camera), where it has fingers, and near every
+/// expected palm.
 class PalmSearch {
  public:
     void create(const Grid& grid, const TrackerSettings& settings);
@@ -47,27 +60,15 @@ class PalmSearch {
                std::span<PalmCandidate> out);
 
  private:
-    /// A pixel of the part.
-    struct Sample {
-        Vec3f p_mm;
-        float radius_mm = 0.0F;    ///< of the circle round it that stays on its surface
-        float area_mm2 = 0.0F;     ///< of the surface that it stands for
-        float distance_mm = 0.0F;  ///< from the palm that is looked at
-        bool border = false;       ///< at the border of the image
-        int pixel = 0;
-    };
-
-    void take(const Grid& grid, const Parts& parts, const Part& part);
-    [[nodiscard]] const Sample& farthest(const Vec3f& from) const;
-    [[nodiscard]] const Sample* thickest_near(const Vec3f& end, float limit_mm) const;
-    /// Measures every sample's distance from the candidate, too.
-    void find_arm(const Part& part, const PalmPrior* prior, PalmCandidate& c);
+    std::size_t find_palms(const Part& part, std::span<const PalmPrior> priors,
+                           std::span<const Limb::Sample*> palms) const;
+    void find_arm(const Part& part, const PalmPrior* prior, PalmCandidate& c) const;
     void find_wrist(PalmCandidate& c) const;
-    void judge(const Part& part, std::span<const Body> bodies, PalmCandidate& c) const;
 
-    TrackerSettings settings_;
-    std::vector<Sample> samples_;  ///< some of the pixels, evenly
-    std::vector<Sample> thick_;    ///< every pixel that may be a palm's centre
+    float radius_min_mm_ = 0.0F;
+    float radius_max_mm_ = 0.0F;
+    float ahead_mm_ = 0.0F;
+    Limb limb_;
 };
 
 /// How far a hand may reach from the palm's centre: to the tip of the middle finger.

@@ -21,6 +21,9 @@ constexpr double kFrontMaxMm = 60.0;
 /// A hand before its own body is one surface with it, by way of the arm; a step of this much ends
 /// it all the same, mm. Fingers before their palm make smaller ones.
 constexpr float kOcclusionMm = 60.0F;
+/// A middle line falls toward a finger's tip by this a pixel at most; an outline's slope is
+/// kChamferUnit.
+constexpr int kRidgeSlope = 3;
 /// Surfaces are counted in 16 bits.
 constexpr int kLabelsMax = 65535;
 
@@ -35,6 +38,7 @@ void Parts::create(const Grid& grid) {
     has_core_.reserve(n + 1);
     label_.assign(n, 0);
     nearness_.assign(n, 0);
+    ridge_.assign(n, 0);
     ball_.assign(n, 0);
     part_of_.assign(n, kNone);
     pixels_.reserve(n);
@@ -46,6 +50,7 @@ void Parts::find(const Grid& grid, std::span<const float> foreground, float thic
                  float area_min_mm2) {
     label_surfaces(grid, foreground, area_min_mm2);
     measure_distance(grid);
+    mark_ridges(grid);
     mark_body(grid, thick_mm);
     collect(grid, area_min_mm2);
 }
@@ -59,8 +64,9 @@ void Parts::label_surfaces(const Grid& grid, std::span<const float> foreground,
     });
     pieces_.assign(static_cast<std::size_t>(components_.count()), {});
     for (const Components::Run& run : components_.runs()) {
-        pieces_[static_cast<std::size_t>(run.component)].area_mm2 +=
-            grid.area_mm2(run.begin, run.end);
+        Piece& piece = pieces_[static_cast<std::size_t>(run.component)];
+        piece.area_mm2 += grid.area_mm2(run.begin, run.end);
+        piece.pixels += run.end - run.begin;
     }
     // Crumbs are no surface at all: they neither bound nor carry a limb.
     int labels = 0;
@@ -124,10 +130,29 @@ void Parts::measure_distance(const Grid& grid) {
     spread(grid, box_, nearness_);
 }
 
+void Parts::mark_ridges(const Grid& grid) {
+    const std::ptrdiff_t w = grid.width;
+    for (int y = box_.y_begin; y < box_.y_end; ++y) {
+        const int begin = grid.index(box_.x_begin, y);
+        const std::uint16_t* const n = nearness_.data() + begin;
+        std::uint16_t* const out = ridge_.data() + begin;
+        for (int x = 0; x < box_.width(); ++x) {
+            const auto least = [&](std::ptrdiff_t row) {
+                const std::uint16_t* const r = n + x + row;
+                return std::min(std::min(r[-1], r[0]), r[1]);
+            };
+            const std::uint16_t deepest = std::min(std::min(least(-w), least(0)), least(w));
+            out[x] = n[x] - deepest <= kRidgeSlope ? std::uint16_t{1} : std::uint16_t{0};
+        }
+    }
+}
+
 void Parts::mark_body(const Grid& grid, float thick_mm) {
-    std::fill(ball_.begin(), ball_.end(), std::uint16_t{0});
+    if (any_core_) {  // in the image before
+        std::fill(ball_.begin(), ball_.end(), std::uint16_t{0});
+    }
+    any_core_ = false;
     // A core's ball reaches its rim, and a little beyond.
-    bool any = false;
     const float margin = kBallMarginMm * kChamferUnit / grid.inverse_focal;
     for (const Components::Run& run : components_.runs()) {
         if (label_[static_cast<std::size_t>(run.begin)] == 0) {
@@ -140,27 +165,30 @@ void Parts::mark_body(const Grid& grid, float thick_mm) {
                     kNearnessMax - nearness_[k] + static_cast<int>(margin / grid.z[k]);
                 ball_[k] = static_cast<std::uint16_t>(std::min<int>(reach, kNearnessMax));
                 has_core_[label_[k]] = 1;
-                any = true;
+                any_core_ = true;
             }
         }
     }
-    if (any) {
+    if (any_core_) {
         spread(grid, box_, ball_, label_);
     }
 }
 
 void Parts::collect(const Grid& grid, float area_min_mm2) {
-    const auto same_kind = [&](int a, int b) {
-        const auto k = static_cast<std::size_t>(a);
-        const auto m = static_cast<std::size_t>(b);
-        return label_[k] == label_[m] && (ball_[k] > 0) == (ball_[m] > 0);
-    };
-    components_.find_in(grid, box_, std::span<const std::uint16_t>(label_), same_kind);
-    pieces_.assign(static_cast<std::size_t>(components_.count()), {});
-    for (const Components::Run& run : components_.runs()) {
-        Piece& piece = pieces_[static_cast<std::size_t>(run.component)];
-        piece.area_mm2 += grid.area_mm2(run.begin, run.end);
-        piece.pixels += run.end - run.begin;
+    // Where nothing is thick, surfaces are the pieces, and known.
+    if (any_core_) {
+        const auto same_kind = [&](int a, int b) {
+            const auto k = static_cast<std::size_t>(a);
+            const auto m = static_cast<std::size_t>(b);
+            return label_[k] == label_[m] && (ball_[k] > 0) == (ball_[m] > 0);
+        };
+        components_.find_in(grid, box_, std::span<const std::uint16_t>(label_), same_kind);
+        pieces_.assign(static_cast<std::size_t>(components_.count()), {});
+        for (const Components::Run& run : components_.runs()) {
+            Piece& piece = pieces_[static_cast<std::size_t>(run.component)];
+            piece.area_mm2 += grid.area_mm2(run.begin, run.end);
+            piece.pixels += run.end - run.begin;
+        }
     }
 
     parts_.clear();
@@ -174,6 +202,10 @@ void Parts::collect(const Grid& grid, float area_min_mm2) {
         ++known;  // the first run of its component
         Piece& piece = pieces_[static_cast<std::size_t>(run.component)];
         const auto first = static_cast<std::size_t>(run.begin);
+        piece.number = label_[first] == 0 ? kNone : kOther;
+        if (label_[first] == 0) {
+            continue;
+        }
         if (ball_[first] > 0) {
             if (piece.area_mm2 >= kBodyCoreMinMm2 && bodies_.size() < std::size_t{kPartsMax}) {
                 bodies_.push_back({label_[first], piece.area_mm2, 0.0F, 0.0F});

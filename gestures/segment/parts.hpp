@@ -63,6 +63,11 @@ class Parts {
     [[nodiscard]] float radius_mm(const Grid& grid, int i) const noexcept {
         return radius_px(i) * grid.pitch_mm(grid.z[static_cast<std::size_t>(i)]);
     }
+    /// Whether a pixel of a part is on a middle line of its surface: no neighbour is clearly
+    /// farther from the rim.
+    [[nodiscard]] bool ridge(int i) const noexcept {
+        return ridge_[static_cast<std::size_t>(i)] != 0;
+    }
     [[nodiscard]] std::span<const Body> bodies() const noexcept { return bodies_; }
 
     static constexpr int kPartsMax = 32;
@@ -71,6 +76,7 @@ class Parts {
     void label_surfaces(const Grid& grid, std::span<const float> foreground, float area_min_mm2);
     void repeat_border(const Grid& grid);
     void measure_distance(const Grid& grid);
+    void mark_ridges(const Grid& grid);
     void mark_body(const Grid& grid, float thick_mm);
     void collect(const Grid& grid, float area_min_mm2);
     void measure_body(const Grid& grid, int component);
@@ -86,9 +92,11 @@ class Parts {
     Components components_;
     std::vector<Piece> pieces_;
     std::vector<std::uint8_t> has_core_;   ///< by label: somewhere it is thick
+    bool any_core_ = false;                ///< something is thick
     Box box_;                              ///< of all surfaces
     std::vector<std::uint16_t> label_;     ///< surface of a pixel, 0 = none
     std::vector<std::uint16_t> nearness_;  ///< to the rim of the surface
+    std::vector<std::uint16_t> ridge_;     ///< in box_; not 0: see ridge()
     std::vector<std::uint16_t> ball_;      ///< > 0: inside a ball of the thick core
     std::vector<std::int8_t> part_of_;
     std::vector<int> pixels_;

@@ -21,6 +21,10 @@ constexpr float kSecondHandBehindMm = 200.0F;
 constexpr float kArmBehindMm = 40.0F;
 constexpr float kArmBesideRadii = 2.6F;
 
+bool may_be_second(const PalmCandidate& c, const Vec3f& first_palm_mm) {
+    return c.score >= kScoreSecond && c.centre_mm.z() - first_palm_mm.z() < kSecondHandBehindMm;
+}
+
 }  // namespace
 
 void Segmenter::create(const Rig& rig, Size size, const TrackerSettings& settings) {
@@ -87,23 +91,30 @@ void Segmenter::choose(const DepthFrame& depth, std::span<const PalmPrior> prior
     const CoarseScene scene{
         grid_, parts_,
         settings_.learn_background ? background_.depth_mm() : std::span<const float>{},
-        static_cast<float>(settings_.background_margin_mm)};
+        static_cast<float>(settings_.background_margin_mm), priors};
     std::array<int, kMaxHands> part_of_region{};
+    std::array<int, kMaxHands> prior_of_region{};
     for (const PalmCandidate& c : candidates_) {
         if (count_ >= std::min<int>(settings_.max_hands, static_cast<int>(kMaxHands))) {
             break;
         }
-        bool free = c.centre_mm.z() <= far_mm_ && c.score >= kScoreMin &&
-                    (c.prior >= 0 || c.score >= kScoreNew);
+        bool free = c.centre_mm.z() <= far_mm_ && c.score >= kScoreMin;
+        if (c.prior < 0) {
+            free &= c.score >= kScoreNew && !hidden_behind(c);
+            for (const PalmPrior& hand : priors) {
+                free &= may_be_second(c, hand.palm_mm);
+            }
+        }
         for (int k = 0; k < count_; ++k) {
             const HandRegion& other = regions_[static_cast<std::size_t>(k)];
             const Vec3f d = c.centre_mm - other.palm_mm;
             free &= d.norm() > other.palm_radius_mm + c.radius_mm;
-            // The other end of the same arm is no second hand.
-            free &= c.part != part_of_region[static_cast<std::size_t>(k)];
-            free &= c.prior >= 0 || (d.z() < kSecondHandBehindMm && c.score >= kScoreSecond);
+            // The other end of the same arm is no second hand, unless it was one before they met.
+            const int prior = prior_of_region[static_cast<std::size_t>(k)];
+            const bool both_known = c.prior >= 0 && prior >= 0 && c.prior != prior;
+            free &= both_known || c.part != part_of_region[static_cast<std::size_t>(k)];
+            free &= c.prior >= 0 || may_be_second(c, other.palm_mm);
         }
-        free &= c.prior >= 0 || !hidden_behind(c);
         if (!free) {
             continue;
         }
@@ -112,6 +123,7 @@ void Segmenter::choose(const DepthFrame& depth, std::span<const PalmPrior> prior
         }
         if (cut_.cut(depth, scene, c, settings_, regions_[static_cast<std::size_t>(count_)])) {
             part_of_region[static_cast<std::size_t>(count_)] = c.part;
+            prior_of_region[static_cast<std::size_t>(count_)] = c.prior;
             ++count_;
         }
     }

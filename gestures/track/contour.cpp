@@ -11,22 +11,20 @@ void Contour::create(const segment::Grid& grid) {
 }
 
 void Contour::trace(const segment::Grid& grid, std::span<const std::uint8_t> labels,
-                    std::uint8_t label, int start) {
+                    const HandRegion& region) {
     points_.clear();
     const int w = grid.width;
     // Clockwise from the left, y down.
     const std::array<int, 8> around = {-1, -w - 1, -w, -w + 1, 1, w + 1, w, w - 1};
-    const auto inside = [&](int i) { return labels[static_cast<std::size_t>(i)] == label; };
-    if (!inside(start)) {
-        return;
-    }
+    const auto inside = [&](int i) { return labels[static_cast<std::size_t>(i)] == region.label; };
     // The raster-first pixel of the label is on its outer rim, whatever holes it has.
-    int first = start;
-    for (int i = grid.index(0, 0); i <= start; ++i) {
-        if (inside(i)) {
-            first = i;
-            break;
-        }
+    const int end = grid.index(region.x_end, region.y_begin);
+    int first = grid.index(region.x_begin, region.y_begin);
+    while (first < end && !inside(first)) {
+        ++first;
+    }
+    if (first == end) {
+        return;
     }
     int here = first;
     int back = 0;  // direction of the empty pixel that was left behind: to the left of the first

@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include <xtrack/hand_region.hpp>
+
 #include "gestures/segment/grid.hpp"
 
 namespace xtrack::track {
@@ -14,9 +16,9 @@ class Contour {
  public:
     void create(const segment::Grid& grid);
 
-    /// @param start a grid index inside the label; the tracing begins above it, at the rim
-    void trace(const segment::Grid& grid, std::span<const std::uint8_t> labels, std::uint8_t label,
-               int start);
+    /// The region's box must fit it.
+    void trace(const segment::Grid& grid, std::span<const std::uint8_t> labels,
+               const HandRegion& region);
 
     [[nodiscard]] std::span<const int> points() const noexcept { return points_; }
 

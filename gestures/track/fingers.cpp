@@ -15,6 +15,8 @@ constexpr float kWidthBelowMm = 14.0F;
 /// A wider end is no fingertip, mm: two fingers that touch are 34.
 constexpr float kTipWidthMaxMm = 31.0F;
 constexpr float kTipWidthMinMm = 4.0F;
+/// A tip of this prominence is a finger's, whatever depth its rim has, mm.
+constexpr float kClearTipMm = 30.0F;
 /// Skin within this of an outline pixel gives the depth there, grid px: the pixel itself may mix
 /// finger and background.
 constexpr int kSkinReach = 2;
@@ -38,6 +40,12 @@ constexpr float kPadBelowMm = 11.0F;
 constexpr float kWideTipMaxMm = 60.0F;
 constexpr float kTwoPi = 6.2831853F;
 
+/// Distance across the line of sight of two points of one finger, mm.
+float seen_width(const Vec3f& a, const Vec3f& b) {
+    const Vec2f rays = a.head<2>() / a.z() - b.head<2>() / b.z();
+    return std::min(a.z(), b.z()) * rays.norm();
+}
+
 std::size_t reach_bin(const Vec3f& v) {
     const float turn = std::atan2(v.y(), v.x()) / kTwoPi + 0.5F;
     const auto bin = static_cast<std::size_t>(turn * static_cast<float>(kReachBins));
@@ -60,9 +68,7 @@ void FingerReader::read(const segment::Grid& grid, std::span<const std::uint8_t>
                         const HandRegion& region, const Vec3f& palm_normal, int side_hint,
                         float tip_prominence_mm, FingerReading& out) {
     out = {};
-    const int start = grid.index(static_cast<int>(std::lround(region.palm_px.x())),
-                                 static_cast<int>(std::lround(region.palm_px.y())));
-    contour_.trace(grid, labels, region.label, start);
+    contour_.trace(grid, labels, region);
     if (contour_.points().size() < 16) {
         return;
     }
@@ -71,7 +77,11 @@ void FingerReader::read(const segment::Grid& grid, std::span<const std::uint8_t>
     measure_reach(region, out);
 
     const float beyond = kFingersBeyondRadii * region.palm_radius_mm;
-    for (int y = region.y_begin; y < region.y_end; ++y) {
+    // Every other row says enough.
+    constexpr int kRowStep = 2;
+    const float row_pitch = static_cast<float>(kRowStep) * grid.inverse_focal * grid.inverse_focal;
+    float seen = 0.0F;  // squared depths
+    for (int y = region.y_begin; y < region.y_end; y += kRowStep) {
         for (int x = region.x_begin; x < region.x_end; ++x) {
             const int i = grid.index(x, y);
             if (labels[static_cast<std::size_t>(i)] != region.label) {
@@ -82,11 +92,12 @@ void FingerReader::read(const segment::Grid& grid, std::span<const std::uint8_t>
             const float along = d.dot(region.arm_direction);
             if (squared > beyond * beyond &&
                 (along < 0.0F || along * along < kArmCone * kArmCone * squared)) {
-                const float pitch = grid.pitch_mm(grid.z[static_cast<std::size_t>(i)]);
-                out.finger_area_mm2 += pitch * pitch;
+                const float z = grid.z[static_cast<std::size_t>(i)];
+                seen += z * z;
             }
         }
     }
+    out.finger_area_mm2 = seen * row_pitch;
     name_fingers(region, side_hint, out);
     if (out.count > 0) {
         float sum = 0.0F;
@@ -126,10 +137,7 @@ void FingerReader::measure_profile(const segment::Grid& grid, std::span<const st
         const bool cut =
             (p - region.wrist_mm).dot(region.arm_direction) > -kCutPixels * grid.pitch_mm(z) ||
             d.dot(region.arm_direction) > kArmSide * d.norm();
-        const int x = grid.x_of(i);
-        const int y = grid.y_of(i);
-        const bool border =
-            x == 0 || y == 0 || x == grid.inner_width - 1 || y == grid.inner_height - 1;
+        const bool border = region.touches_border && grid.at_border(i);
         points_.push_back(p);
         distance_.push_back(cut || border ? 0.0F : d.norm());
     }
@@ -183,7 +191,12 @@ void FingerReader::find_tips(const HandRegion& region, float tip_prominence_mm,
         while (after < n && at(k + after) > level) {
             ++after;
         }
-        const float width = (point(k - before) - point(k + after)).norm();
+        // At its rim the skin's depth may be mixed with that of what lies behind. A finger that
+        // stands out is not wider for it; what hardly does, or ends within a pixel, may be nothing
+        // but such depth.
+        const bool clear = prominence > kClearTipMm && std::min(before, after) > 1;
+        const float width = clear ? seen_width(point(k - before), point(k + after))
+                                  : (point(k - before) - point(k + after)).norm();
         if (width > kTipWidthMaxMm && width < kWideTipMaxMm && out.wide_count < kTipsMax) {
             out.wide_mm[out.wide_count++] = point(k);
         }

@@ -24,7 +24,7 @@ constexpr Size kSizeMax{1920, 1200};
 constexpr Duration kPriorAge = std::chrono::milliseconds{120};
 /// How far a palm may be from its prediction: what it jumps over at once, and by how much more a
 /// second unseen. What is farther is another hand, or the hand of what was taken for one.
-constexpr float kJumpMm = 80.0F;
+constexpr float kJumpMm = 70.0F;
 constexpr float kJumpMmps = 600.0F;
 
 struct Number {
