@@ -59,7 +59,17 @@ void PalmSearch::create(const Grid& grid, const TrackerSettings& settings) {
 }
 
 /// Where the forearm is: thick surface outside the palm's circle pulls, fingers push.
-void PalmSearch::find_arm(const Part& part, const PalmPrior* prior, PalmCandidate& c) const {
+void PalmSearch::find_arm(const Part& part, std::span<const PalmPrior> priors,
+                          PalmCandidate& c) const {
+    const auto of_other_hand = [&](const Vec3f& p_mm, float squared) {
+        for (std::size_t m = 0; c.prior >= 0 && m < priors.size(); ++m) {
+            if (static_cast<int>(m) != c.prior &&
+                (p_mm - priors[m].palm_mm).squaredNorm() < squared) {
+                return true;
+            }
+        }
+        return false;
+    };
     const float r = c.radius_mm;
     const float ring = kRingRadii * r;
     const float reach = reach_limit_mm(r);
@@ -71,7 +81,7 @@ void PalmSearch::find_arm(const Part& part, const PalmPrior* prior, PalmCandidat
         mass += 1.0F;
         const Vec3f d = s.p_mm - c.centre_mm;
         const float n = d.norm();
-        if (n < ring || n > 2.0F * reach) {
+        if (n < ring || n > 2.0F * reach || of_other_hand(s.p_mm, n * n)) {
             continue;
         }
         const Vec3f u = d / n;
@@ -89,8 +99,8 @@ void PalmSearch::find_arm(const Part& part, const PalmPrior* prior, PalmCandidat
         const Vec3f d = part.root_mm - c.centre_mm;
         a += 0.3F * d / std::max(1.0F, d.norm());
     }
-    if (prior != nullptr) {
-        a += kPriorWeight * prior->arm_direction;
+    if (c.prior >= 0) {
+        a += kPriorWeight * priors[static_cast<std::size_t>(c.prior)].arm_direction;
     }
     const float n = a.norm();
     // Nothing seen: a user's forearm comes from below and behind.
@@ -165,7 +175,7 @@ int PalmSearch::search(const Grid& grid, const Parts& parts, int part_index,
         if (known || small || c.radius_mm > radius_max_mm_) {
             continue;
         }
-        find_arm(part, c.prior >= 0 ? &priors[static_cast<std::size_t>(c.prior)] : nullptr, c);
+        find_arm(part, priors, c);
         find_wrist(c);
         score_palm(limb_, part, parts.bodies(), ahead_mm_, c);
         out[static_cast<std::size_t>(written++)] = c;

@@ -62,7 +62,7 @@ class PalmSearch {
  private:
     std::size_t find_palms(const Part& part, std::span<const PalmPrior> priors,
                            std::span<const Limb::Sample*> palms) const;
-    void find_arm(const Part& part, const PalmPrior* prior, PalmCandidate& c) const;
+    void find_arm(const Part& part, std::span<const PalmPrior> priors, PalmCandidate& c) const;
     void find_wrist(PalmCandidate& c) const;
 
     float radius_min_mm_ = 0.0F;

@@ -17,9 +17,16 @@ constexpr float kScoreNew = 0.5F;
 constexpr float kScoreSecond = 0.6F;
 /// A second hand is about as far away as the first; what lies farther behind is something else.
 constexpr float kSecondHandBehindMm = 200.0F;
+/// What points this much along a hand's arm is its arm: cosine of the angle between them.
+constexpr float kAlongArm = 0.5F;
 /// What looks out from behind a hand, this much deeper and this near beside it, is its own arm.
 constexpr float kArmBehindMm = 40.0F;
 constexpr float kArmBesideRadii = 2.6F;
+
+/// Whether something at `d` from a palm may be the hand's own arm.
+bool along(const Vec3f& arm_direction, const Vec3f& d) {
+    return d.dot(arm_direction) > kAlongArm * d.norm();
+}
 
 bool may_be_second(const PalmCandidate& c, const Vec3f& first_palm_mm) {
     return c.score >= kScoreSecond && c.centre_mm.z() - first_palm_mm.z() < kSecondHandBehindMm;
@@ -111,7 +118,8 @@ void Segmenter::choose(const DepthFrame& depth, std::span<const PalmPrior> prior
             free &= d.norm() > other.palm_radius_mm + c.radius_mm;
             // The other end of the same arm is no second hand, unless it was one before they met.
             const int prior = prior_of_region[static_cast<std::size_t>(k)];
-            const bool both_known = c.prior >= 0 && prior >= 0 && c.prior != prior;
+            const bool both_known = c.prior >= 0 && prior >= 0 && c.prior != prior &&
+                                    !along(other.arm_direction, d) && !along(c.arm_direction, -d);
             free &= both_known || c.part != part_of_region[static_cast<std::size_t>(k)];
             free &= c.prior >= 0 || may_be_second(c, other.palm_mm);
         }
