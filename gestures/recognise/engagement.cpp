@@ -16,9 +16,10 @@ namespace xtrack::recognise {
 
 namespace {
 
-// Palm to elbow of an adult; a child's is shorter, but so are the distances that it is used for.
-constexpr float kPalmToElbowMm = 330.0F;
-constexpr float kSureOfSide = 0.8F;
+// Palms this near can be mixed up by a tracker, which then takes so long to see that sides and
+// sizes do not fit any more.
+constexpr float kMeetMm = 150.0F;
+constexpr double kMixedUpMs = 5000.0;
 
 bool in_zone(const GestureSettings& s, const Vec3f& p_mm, double margin_mm) {
     const auto within = [&](float value, double low, double high) {
@@ -36,29 +37,7 @@ const HandReport* find(std::span<const HandReport> hands, int hand_id) {
     return found == hands.end() ? nullptr : &*found;
 }
 
-bool is_sure(const Hand& hand) {
-    return hand.chirality != Chirality::unknown && hand.chirality_confidence >= kSureOfSide;
-}
-
 }  // namespace
-
-SameBody same_body(const GestureSettings& s, const Hand& a, const Hand& b) noexcept {
-    const bool sides = is_sure(a) && is_sure(b);
-    if (sides && a.chirality == b.chirality) {
-        return SameBody::no;
-    }
-    if (a.forearm.isZero() || b.forearm.isZero()) {
-        return sides ? SameBody::yes : SameBody::unknown;
-    }
-    const Vec3f elbows =
-        (b.palm_mm + kPalmToElbowMm * b.forearm) - (a.palm_mm + kPalmToElbowMm * a.forearm);
-    const bool near = std::abs(static_cast<double>(elbows.x())) <= s.body_width_mm &&
-                      std::abs(static_cast<double>(elbows.y())) <= s.body_height_mm &&
-                      std::abs(static_cast<double>(elbows.z())) <= s.body_depth_mm;
-    // Arms may cross, elbows do not.
-    const bool crossed = sides && (a.chirality == Chirality::left) != (elbows.x() > 0.0F);
-    return near && !crossed ? SameBody::yes : SameBody::no;
-}
 
 const char* Engagement::name(State s) {
     switch (s) {
@@ -82,61 +61,115 @@ const char* Engagement::name(Event e) {
     return "?";
 }
 
-Engagement::Waiting& Engagement::waiting_of(int hand_id) {
-    Waiting* oldest = waiting_.data();
-    for (Waiting& w : waiting_) {
-        if (w.hand_id == hand_id) {
-            return w;
-        }
-        oldest = w.since < oldest->since ? &w : oldest;
-    }
-    *oldest = {};
-    oldest->hand_id = hand_id;
-    return *oldest;
+bool Engagement::is_slow(const Context& c, const HandReport& r) const {
+    return r.speed_mmps < c.signal.still_mmps(c.settings.engage_still_mmps,
+                                              from_ms(c.settings.velocity_window_ms));
 }
 
-bool Engagement::comes_back(const Context& c, const HandReport& r) {
-    const auto off_mm = static_cast<double>((r.hand->palm_mm - owner_hand_.palm_mm).norm());
-    return kept_ && !waiting_of(r.hand->id).other && off_mm <= c.settings.engage_return_mm &&
-           in_zone(c.settings, r.hand->palm_mm, 0.0);
+const HandReport* Engagement::returned(const Context& c, std::span<const HandReport> hands) {
+    const GestureSettings& s = c.settings;
+    const auto is_owner = [&](const HandReport& r) {
+        const Acquaintance& one = company_.of(r.hand->id);
+        const Acquaintance* before = company_.before(s, one);
+        return in_zone(s, one.limb.palm_mm, 0.0) &&
+               (r.hand->id == owner_ || (before != nullptr && before->hand_id == owner_));
+    };
+    const auto back = std::ranges::find_if(hands, is_owner);
+    // Who is back in time but may not act yet is waited for.
+    const double lockout_ms = s.hand_valid_ms + s.entry_lockout_ms;
+    kept_ = c.sensor <= kept_until_ + from_ms(back == hands.end() ? 0.0 : lockout_ms);
+    return kept_ && back != hands.end() && back->present ? &*back : nullptr;
 }
 
 /// The hand that takes an idle session: one that has just signalled, else the one that has been
 /// still in the zone for longest.
 const HandReport* Engagement::summons(const Context& c, std::span<const HandReport> hands) {
     const GestureSettings& s = c.settings;
+    const HandReport* signalled = nullptr;
     const HandReport* first = nullptr;
     Stamp since;
-    kept_ = kept_ && c.sensor <= kept_until_;
     for (const HandReport& r : hands) {
-        Waiting& w = waiting_of(r.hand->id);
+        Acquaintance& one = company_.of(r.hand->id);
         const bool inside = in_zone(s, r.hand->palm_mm, 0.0);
-        const double still_mmps =
-            c.signal.still_mmps(s.engage_still_mmps, from_ms(s.velocity_window_ms));
-        const bool moves = r.speed_mmps >= still_mmps;
-        w.tired = w.tired && inside && !moves;
-        const bool still = r.present && inside && !moves && !w.tired;
-        if (still && !w.still) {
-            w.since = c.sensor;
+        const bool slow = is_slow(c, r);
+        one.tired = one.tired && inside && slow;
+        const bool still = r.present && inside && slow && !one.tired;
+        if (still && !one.still) {
+            one.still_since = c.sensor;
         }
-        w.still = still;
-        if (r.present && comes_back(c, r)) {
-            return &r;
-        }
-        if (kept_) {
-            continue;
-        }
-        if (r.present && inside && r.summons) {
-            return &r;
+        one.still = still;
+        if (r.present && inside && r.summons && signalled == nullptr) {
+            signalled = &r;
         }
         const bool long_enough =
-            s.engage_by_stillness && still && to_ms(c.sensor - w.since) >= s.engage_ms;
-        if (long_enough && (first == nullptr || w.since < since)) {
+            s.engage_by_stillness && still && to_ms(c.sensor - one.still_since) >= s.engage_ms;
+        if (long_enough && (first == nullptr || one.still_since < since)) {
             first = &r;
-            since = w.since;
+            since = one.still_since;
         }
     }
-    return first;
+    if (kept_) {
+        if (const HandReport* back = returned(c, hands)) {
+            return back;
+        }
+    }
+    if (kept_) {
+        return nullptr;
+    }
+    const HandReport* taker = signalled != nullptr ? signalled : first;
+    if (taker != nullptr) {
+        company_.forget_trust();  // it was of another body
+    }
+    return taker;
+}
+
+const HandReport* Engagement::mixed_up(const Context& c, std::span<const HandReport> hands,
+                                       const HandReport& owner, double ms) {
+    const Limb& now = company_.of(owner_).limb;
+    // Two ids change places from one frame to the next.
+    const auto in_its_place = [&](const HandReport& r) {
+        return r.hand->id != owner_ &&
+               (r.hand->palm_mm - owner.expected_mm).norm() <= owner.reach_mm;
+    };
+    if (owner.jumped) {
+        const auto other = std::ranges::find_if(hands, in_its_place);
+        return other == hands.end() ? nullptr : &*other;
+    }
+    // Or they do it where the hands meet, and are seen to be the other ones after it.
+    bool met = false;
+    const HandReport* likely = nullptr;
+    for (const HandReport& r : hands) {
+        if (r.hand->id == owner_) {
+            continue;
+        }
+        Acquaintance& one = company_.of(r.hand->id);
+        if ((one.limb.palm_mm - now.palm_mm).norm() <= kMeetMm) {
+            one.met = c.sensor;
+        }
+        if (one.met != Stamp{} && to_ms(c.sensor - one.met) <= kMixedUpMs) {
+            met = true;
+            likely = same_build(owner_limb_, one.limb) ? &r : likely;
+        }
+    }
+    if (!met) {
+        owner_limb_ = now;
+    }
+    other_ms_ = likely != nullptr && !same_build(owner_limb_, now) ? other_ms_ + ms : 0.0;
+    return other_ms_ >= c.settings.engage_ms ? likely : nullptr;
+}
+
+void Engagement::hand_over(const Context& c, const HandReport& to) {
+    Acquaintance& stranger = company_.of(owner_);
+    Acquaintance& owner = company_.of(to.hand->id);
+    stranger.forget_trust();
+    owner.forget_trust();
+    stranger.met = owner.met = Stamp{};
+    owner.limb.side = owner_limb_.side;
+    owner.limb.length_mm = owner_limb_.length_mm;
+    owner_ = to.hand->id;
+    second_ = 0;
+    other_ms_ = 0.0;
+    handle(c, Event::owned, {"its hand has another id now", static_cast<double>(owner_), 0.0});
 }
 
 void Engagement::watch_owner(const Context& c, const HandReport* owner) {
@@ -156,7 +189,7 @@ void Engagement::watch_owner(const Context& c, const HandReport* owner) {
     if (to_ms(c.sensor - inside_at_) >= s.engage_leave_ms) {
         handle(c, Event::left);
     } else if (to_ms(c.sensor - busy_at_) >= s.engage_idle_ms) {
-        waiting_of(owner_).tired = true;
+        company_.of(owner_).tired = true;
         reason_ = CancelReason::timeout;
         handle(c, Event::idle, {"it did nothing", to_ms(c.sensor - busy_at_), s.engage_idle_ms});
     } else {
@@ -164,36 +197,46 @@ void Engagement::watch_owner(const Context& c, const HandReport* owner) {
     }
 }
 
-void Engagement::watch_second(const Context& c, std::span<const HandReport> hands,
-                              const HandReport* owner) {
+/// Who is the owner's second hand; only while the owner is seen.
+void Engagement::watch_others(const Context& c, std::span<const HandReport> hands, double ms) {
     const GestureSettings& s = c.settings;
-    const auto fits = [&](const HandReport& r) {
-        return owner != nullptr && r.hand->id != owner_ && r.present &&
-               in_zone(s, r.hand->palm_mm, s.zone_margin_mm) &&
-               same_body(s, *owner->hand, *r.hand) == SameBody::yes;
-    };
-    if (second_ != 0) {
-        // It stays while the owner is not seen for a moment; a wrong one goes at once.
-        const HandReport* second = find(hands, second_);
-        if (owner != nullptr && (second == nullptr || !fits(*second))) {
+    const Limb owner = company_.of(owner_).limb;
+    for (const HandReport& r : hands) {
+        const int id = r.hand->id;
+        Acquaintance& one = company_.of(id);
+        const bool in = id == second_;
+        if (id == owner_ || one.ruled_out || r.hand->touches_border ||
+            to_ms(c.sensor - one.first_seen) < s.hand_valid_ms) {
+            continue;
+        }
+        if (r.present && !one.asked) {
+            one.asked = true;
+            if (const Acquaintance* before = company_.before(s, one);
+                before != nullptr && before->hand_id != owner_) {
+                one.trust = before->trust;
+                one.ruled_out = before->ruled_out;
+            }
+        }
+        const bool inside = in_zone(s, r.hand->palm_mm, s.zone_margin_mm);
+        one.outside_ms = inside ? 0.0 : one.outside_ms + ms;
+        const SameBody verdict = same_body(s, owner, one.limb, in);
+        if (inside || !is_possible(verdict)) {
+            one.weigh(s, verdict, r.present && inside && is_slow(c, r), in, ms);
+        }
+        if (in && (one.trust <= 0.0 || one.ruled_out || one.outside_ms >= s.engage_leave_ms)) {
             second_ = 0;
         }
-        return;
-    }
-    const HandReport* wants = find(hands, joining_);
-    if (wants == nullptr || !fits(*wants)) {
-        const auto other = std::ranges::find_if(hands, fits);
-        joining_ = other == hands.end() ? 0 : other->hand->id;
-        joining_since_ = c.sensor;
-        return;
-    }
-    if (to_ms(c.sensor - joining_since_) >= s.engage_ms) {
-        second_ = joining_;
-        joining_ = 0;
+        if (second_ == 0 && r.present && inside && one.trust >= 1.0 && !one.ruled_out) {
+            second_ = id;
+        }
+        if (one.ruled_out) {
+            handle(c, Event::owned, {"another body's hand", static_cast<double>(id), 0.0});
+        }
     }
 }
 
 void Engagement::update(const Context& c, std::span<const HandReport> hands) {
+    const double ms = company_.note(c.settings, hands, c.sensor);
     if (state() == State::idle) {
         if (const HandReport* hand = summons(c, hands)) {
             owner_hand_ = *hand->hand;
@@ -204,9 +247,15 @@ void Engagement::update(const Context& c, std::span<const HandReport> hands) {
         return;
     }
     const HandReport* owner = find(hands, owner_);
+    if (owner != nullptr) {
+        if (const HandReport* real = mixed_up(c, hands, *owner, ms)) {
+            hand_over(c, *real);
+            owner = real;
+        }
+    }
     watch_owner(c, owner);
-    if (is_engaged()) {
-        watch_second(c, hands, owner);
+    if (is_engaged() && owner != nullptr) {
+        watch_others(c, hands, ms);
     }
 }
 
@@ -215,9 +264,6 @@ void Engagement::lose(const Context& c, int hand_id) {
         // It may be back at once, and nobody takes its place meanwhile.
         kept_ = true;
         kept_until_ = c.sensor + from_ms(c.settings.engage_return_ms);
-        for (Waiting& w : waiting_) {
-            w.other = w.hand_id != owner_;
-        }
         reason_ = CancelReason::lost;
         handle(c, Event::lost);
     }
@@ -250,9 +296,11 @@ std::optional<EngageState> Engagement::idle(const Context& c, Event event) {
         case Event::waiting: return State::idle;
         case Event::summoned:
             owner_ = owner_hand_.id;
-            second_ = joining_ = 0;
+            owner_limb_ = company_.of(owner_).limb;
+            second_ = 0;
+            other_ms_ = 0.0;
             kept_ = false;
-            onset_ = waiting_of(owner_).still ? waiting_of(owner_).since : c.sensor;
+            onset_ = company_.of(owner_).still ? company_.of(owner_).still_since : c.sensor;
             inside_at_ = busy_at_ = c.sensor;
             rest_mm_ = owner_hand_.palm_mm;
             gesture_id_ = c.next_gesture_id++;

@@ -4,28 +4,16 @@
 #include <optional>
 #include <span>
 
+#include "gestures/recognise/company.hpp"
 #include "gestures/recognise/step.hpp"
 
 namespace xtrack::recognise {
-
-/// Whether two forearms can belong to one body.
-enum class SameBody { no, unknown, yes };
-[[nodiscard]] SameBody same_body(const GestureSettings& s, const Hand& a, const Hand& b) noexcept;
-
-/// What the session hears of one hand in a frame.
-struct HandReport {
-    const Hand* hand = nullptr;
-    double speed_mmps = 0.0;
-    bool present = false;  ///< it may act, and is not cut by the border
-    bool summons = false;  ///< it has just waved, or was raised
-    bool active = false;   ///< a gesture of it is, or has just been
-};
 
 enum class EngageState { idle, engaged };
 enum class EngageEvent { waiting, summoned, owned, left, idle, lost, dropped, finished };
 
 /// Whose session it is: the hand that engaged owns it until it disengages, a second one joins where
-/// its forearm fits the same body, all others are bystanders. The diagram is in
+/// it has fitted the same body for a while, all others are bystanders. The diagram is in
 /// docs/gestures/engage.md and in engagement.cpp.
 class Engagement : public Machine<Engagement, EngageState, EngageEvent> {
  public:
@@ -33,7 +21,7 @@ class Engagement : public Machine<Engagement, EngageState, EngageEvent> {
 
     /// @param c of any hand; used for settings, time and events
     void update(const Context& c, std::span<const HandReport> hands);
-    /// The owner is gone for good.
+    /// A hand is gone.
     void lose(const Context& c, int hand_id);
     void drop(const Context& c, CancelReason reason, const char* why);
     void finish(const Context& c);
@@ -54,35 +42,30 @@ class Engagement : public Machine<Engagement, EngageState, EngageEvent> {
     std::optional<State> idle(const Context& c, Event event);
     std::optional<State> engaged(const Context& c, Event event);
 
-    /// A hand that waits to engage, or to join.
-    struct Waiting {
-        int hand_id = 0;  ///< 0: free
-        Stamp since;
-        bool still = false;
-        bool tired = false;  ///< its session timed out: it must move first
-        bool other = false;  ///< it was there when the owner was lost, so that it is not the owner
-    };
-    Waiting& waiting_of(int hand_id);
     const HandReport* summons(const Context& c, std::span<const HandReport> hands);
-    /// The lost owner's hand under another id.
-    [[nodiscard]] bool comes_back(const Context& c, const HandReport& r);
+    /// The lost owner's hand, back.
+    const HandReport* returned(const Context& c, std::span<const HandReport> hands);
+    /// The owner's hand, where its tracker has given its id to another.
+    const HandReport* mixed_up(const Context& c, std::span<const HandReport> hands,
+                               const HandReport& owner, double ms);
+    void hand_over(const Context& c, const HandReport& to);
     void watch_owner(const Context& c, const HandReport* owner);
-    void watch_second(const Context& c, std::span<const HandReport> hands, const HandReport* owner);
+    void watch_others(const Context& c, std::span<const HandReport> hands, double ms);
+    [[nodiscard]] bool is_slow(const Context& c, const HandReport& r) const;
     void send(const Context& c, EventPhase phase, CancelReason reason = CancelReason::none) const;
 
-    static constexpr std::size_t kWaiting = 2 * kMaxHands;
-    std::array<Waiting, kWaiting> waiting_{};
+    Company company_;
     int owner_ = 0;
     int second_ = 0;
     Hand owner_hand_;
+    Limb owner_limb_;        ///< as it was when no other hand was near
+    double other_ms_ = 0.0;  ///< so long the owner's id has looked like another hand
     Stamp onset_;
     Stamp inside_at_;  ///< the owner's last moment in the zone
     Stamp busy_at_;    ///< the owner's last deed
     Vec3f rest_mm_ = Vec3f::Zero();
     bool kept_ = false;  ///< for an owner that was lost
     Stamp kept_until_;
-    int joining_ = 0;
-    Stamp joining_since_;
     int gesture_id_ = -1;
     CancelReason reason_ = CancelReason::none;
 };

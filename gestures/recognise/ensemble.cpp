@@ -154,7 +154,8 @@ void Ensemble::see(const HandFrame& frame, bool first) {
         }
         pass_time(slot, now, now, now);
         if (slot.used && slot.seen_now) {
-            if (slot.jumps(now)) {
+            slot.follow(now);
+            if (slot.jumped) {
                 slot.presence.enter_anew(now);
             }
             slot.seen_now = slot.presence.followed() && slot.add(now, frame.span);
@@ -176,9 +177,15 @@ void Ensemble::engage(Stamp now) {
         }
         any = &slot;
         const Vec3f velocity = slot.history.velocity(from_ms(settings_.velocity_window_ms));
-        reports[count++] = {&slot.hand, static_cast<double>(velocity.norm()),
-                            slot.presence.may_act() && !slot.hand.touches_border, slot.summons,
-                            slot.was_active};
+        reports[count++] = {.hand = &slot.hand,
+                            .length_mm = slot.size.length_mm(),
+                            .speed_mmps = static_cast<double>(velocity.norm()),
+                            .present = slot.presence.may_act() && !slot.hand.touches_border,
+                            .summons = slot.summons,
+                            .active = slot.was_active,
+                            .jumped = slot.jumped,
+                            .expected_mm = slot.expected_mm,
+                            .reach_mm = slot.reach_mm};
     }
     if (any == nullptr) {
         return;
@@ -201,6 +208,9 @@ void Ensemble::act(HandSlot& slot, Stamp now) {
 TwoGrips Ensemble::two_grips() {
     std::array<HandSlot*, 2> slots{};
     std::size_t count = 0;
+    const auto limb = [](const HandSlot& slot) {
+        return limb_of(slot.hand, slot.size.length_mm());
+    };
     for (HandSlot& slot : slots_) {
         if (!slot.used || count == slots.size()) {
             continue;
@@ -208,7 +218,7 @@ TwoGrips Ensemble::two_grips() {
         const bool paired = slot.hand.id == pair_[0] || slot.hand.id == pair_[1];
         const bool free = pair_[0] == 0 && slot.fingers().held && gate_of(slot) == Gate::open;
         const bool fits =
-            count == 0 || same_body(settings_, slots[0]->hand, slot.hand) != SameBody::no;
+            count == 0 || is_possible(same_body(settings_, limb(*slots[0]), limb(slot)));
         if (paired || (free && fits)) {
             slots[count++] = &slot;
         }

@@ -20,7 +20,8 @@ void HandSlot::begin(const Hand& seen, Stamp now, bool in_view) {
     forget_motion();
     silence = {};
     machines = {};
-    was_active = summons = false;
+    was_active = summons = jumped = false;
+    size.forget();
     presence.appear(now, in_view);
 }
 
@@ -30,18 +31,23 @@ void HandSlot::forget_motion() {
     meter = {};
 }
 
-bool HandSlot::jumps(Stamp now) const noexcept {
-    if (history.size() < 2) {
-        return false;
+void HandSlot::follow(Stamp now) noexcept {
+    jumped = false;
+    if (history.size() >= 2) {
+        const MotionSample& last = history.at(0);
+        const MotionSample& before = history.at(1);
+        const double step_s = to_seconds(now - last.stamp);
+        const double before_s = to_seconds(last.stamp - before.stamp);
+        expected_mm =
+            last.palm_mm + static_cast<float>(step_s / before_s) * (last.palm_mm - before.palm_mm);
+        reach_mm =
+            static_cast<float>(kJumpNoiseMm + 0.5 * kMostMmps2 * step_s * (step_s + before_s));
+        jumped = (hand.palm_mm - expected_mm).norm() > reach_mm;
     }
-    const MotionSample& last = history.at(0);
-    const MotionSample& before = history.at(1);
-    const double step_s = to_seconds(now - last.stamp);
-    const double before_s = to_seconds(last.stamp - before.stamp);
-    const Vec3f expected =
-        last.palm_mm + static_cast<float>(step_s / before_s) * (last.palm_mm - before.palm_mm);
-    const auto off_mm = static_cast<double>((hand.palm_mm - expected).norm());
-    return off_mm > kJumpNoiseMm + 0.5 * kMostMmps2 * step_s * (step_s + before_s);
+    if (jumped) {
+        size.forget();
+    }
+    size.add(hand, now);
 }
 
 bool HandSlot::add(Stamp now, Duration span) {

@@ -4,6 +4,7 @@
 #include <xtrack/hand.hpp>
 #include <xtrack/one_euro_filter.hpp>
 
+#include "gestures/recognise/body.hpp"
 #include "gestures/recognise/context.hpp"
 #include "gestures/recognise/machines/circle.hpp"
 #include "gestures/recognise/machines/double.hpp"
@@ -114,14 +115,20 @@ struct HandSlot {
     Machines machines;
     bool was_active = false;  ///< a gesture was, in the last frame
     bool summons = false;     ///< it has just waved: for a session that is idle
+    HandSize size;
+    /// Where no hand can be after the last two samples: another place of the arm, or another hand,
+    /// was taken for it until now, or is from now on. @{
+    bool jumped = false;
+    Vec3f expected_mm = Vec3f::Zero();
+    float reach_mm = 0.0F;  ///< about expected_mm
+    /// @}
 
     void begin(const Hand& seen, Stamp now, bool in_view);
     /// @return false when the sample was left out (MotionHistory::add())
     bool add(Stamp now, Duration span);
     void forget_motion();
-    /// The palm is where no hand can be after the last two samples: another place of the arm was
-    /// taken for it until now, or is from now on.
-    [[nodiscard]] bool jumps(Stamp now) const noexcept;
+    /// Judges by its last samples where it is now.
+    void follow(Stamp now) noexcept;
 
     void drop(const Context& c, CancelReason reason, const char* why);
     /// What is active and will not be wanted any more is cancelled.

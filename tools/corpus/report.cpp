@@ -76,9 +76,10 @@ struct Cause {
 std::vector<std::pair<std::string, Cause>> causes_of(const Tally& tally) {
     std::map<std::string, Cause> causes;
     for (const Finding& f : tally.findings) {
-        Cause& cause = causes[f.missed ? fmt::format("{} missed: {}", f.gesture, f.why_not)
-                                       : fmt::format("{}{} while {}", f.gesture,
-                                                     f.wrong_hand ? ", wrong hand," : "", f.doing)];
+        Cause& cause =
+            causes[f.missed ? fmt::format("{} missed: {}", f.gesture, f.why_not)
+                            : fmt::format("{}{}{} while {}", f.strange ? "a stranger's " : "",
+                                          f.gesture, f.wrong_hand ? ", wrong hand," : "", f.doing)];
         ++cause.count;
         cause.plain += f.by_definition ? 1 : 0;
     }
@@ -103,7 +104,9 @@ std::string list_of_causes(const Group& group, bool explain) {
     }
     for (const Finding& f : group.tally.findings) {
         out += fmt::format("      {:<44} {:>9.3f} s  {:<22} {}\n", f.sequence, f.t_s, f.gesture,
-                           f.missed ? "missed: " + f.why_not : "while " + f.doing);
+                           f.missed    ? "missed: " + f.why_not
+                           : f.strange ? "a stranger's, while " + f.doing
+                                       : "while " + f.doing);
     }
     return out;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -63,6 +64,8 @@ struct Actor {
     float confidence = 1.0F;
     Vec3f forearm = Vec3f::Zero();  ///< toward the elbow; zero: unknown
     float grab = 0.0F;
+    float palm_radius_mm = 0.0F;  ///< of a palm that faces the screen; 0: unknown
+    std::function<void(double ms, Hand& hand)> change = {};  ///< what its tracker says else
 
     [[nodiscard]] At where(double ms) const {
         std::size_t i = 0;
@@ -124,6 +127,10 @@ inline Hand hand_of(const Actor& actor, const At& at, Noise& noise) {
     hand.touches_border = at.border;
     hand.forearm = actor.forearm;
     hand.grab_value = actor.grab;
+    hand.palm_radius_mm = actor.palm_radius_mm;
+    if (actor.palm_radius_mm > 0.0F) {
+        hand.palm_normal = {0.0F, 0.0F, -1.0F};
+    }
     const Vec3f shake{noise(actor.noise_mm), noise(actor.noise_mm), noise(actor.noise_mm)};
     hand.palm_mm = at.palm_mm + shake;
     const Vec3f x{1.0F, 0.0F, 0.0F};
@@ -178,7 +185,11 @@ class Stage {
             for (const Actor& actor : actors) {
                 const At at = actor.where(ms);
                 if (at.seen) {
-                    frame.hands[frame.count++] = hand_of(actor, at, noise);
+                    Hand& hand = frame.hands[frame.count++];
+                    hand = hand_of(actor, at, noise);
+                    if (actor.change) {
+                        actor.change(ms, hand);
+                    }
                 }
             }
             keep(recogniser.push(frame));

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gestures/recognise/company.hpp"
+
+#include <algorithm>
+
+#include "gestures/recognise/motion_history.hpp"
+
+namespace xtrack::recognise {
+
+namespace {
+
+// Doubt grows to this in so long; whoever stands beside for minutes has to fit five times as long
+// as one who has just come.
+constexpr double kMostDoubt = 6.0;
+// A gap in the frames is no evidence.
+constexpr double kLongestStepMs = 100.0;
+
+/// An owner is kept its session from when it is gone.
+double remembered_ms(const GestureSettings& s) { return s.gone_ms + s.engage_return_ms; }
+
+}  // namespace
+
+void Acquaintance::forget_trust() noexcept {
+    trust = against_ms = 0.0;
+    ruled_out = false;
+}
+
+void Acquaintance::weigh(const GestureSettings& s, SameBody verdict, bool settled, bool in,
+                         double ms) noexcept {
+    const auto doubt = [&](double full_ms) {
+        trust = std::max(std::min(trust, 0.0) - ms / full_ms, -kMostDoubt);
+    };
+    switch (verdict) {
+        case SameBody::no:
+            against_ms += ms;
+            ruled_out = against_ms >= (in ? s.engage_leave_ms : s.hand_valid_ms);
+            trust = in && !ruled_out ? trust : std::min(trust, 0.0);
+            break;
+        case SameBody::same_side:
+            // A tracker may change its mind.
+            against_ms += in ? ms : 0.0;
+            trust = in && against_ms < s.engage_leave_ms ? trust : std::min(trust, 0.0);
+            break;
+        case SameBody::far:
+            if (!in) {
+                doubt(s.hand_valid_ms);
+            }
+            break;
+        case SameBody::unsure:
+            if (!in) {
+                doubt(s.engage_ms);
+            }
+            break;
+        case SameBody::yes:
+            against_ms = std::max(against_ms - ms, 0.0);
+            if (settled) {
+                trust = std::min(trust + ms / s.engage_ms, 1.0);
+            } else if (!in) {
+                trust = std::min(trust, 0.0);
+            }
+            break;
+    }
+}
+
+double Company::note(const GestureSettings& s, std::span<const HandReport> hands, Stamp now) {
+    for (const HandReport& r : hands) {
+        Acquaintance& one = of(r.hand->id);
+        const Limb limb = limb_of(*r.hand, r.length_mm);
+        if (one.hand_id == 0 || to_ms(now - one.seen) > remembered_ms(s)) {
+            one = {};
+            one.hand_id = r.hand->id;
+            one.first_seen = now;
+            one.first_mm = limb.palm_mm;
+            one.limb = limb;
+        }
+        // What was known once is not forgotten while it is not seen.
+        const Limb was = one.limb;
+        one.limb = limb;
+        one.limb.side = limb.side != Chirality::unknown ? limb.side : was.side;
+        one.limb.length_mm = limb.length_mm > 0.0F ? limb.length_mm : was.length_mm;
+        one.seen = now;
+    }
+    const double ms = std::clamp(to_ms(now - last_), 0.0, kLongestStepMs);
+    last_ = now;
+    return ms;
+}
+
+Acquaintance& Company::of(int hand_id) {
+    // Its own place, else a free one, else that of the hand that was not seen for longest.
+    Acquaintance* place = all_.data();
+    for (Acquaintance& one : all_) {
+        if (one.hand_id == hand_id) {
+            return one;
+        }
+        const bool better =
+            one.hand_id == 0 ? place->hand_id != 0 : place->hand_id != 0 && one.seen < place->seen;
+        place = better ? &one : place;
+    }
+    *place = {};
+    return *place;
+}
+
+const Acquaintance* Company::before(const GestureSettings& s, const Acquaintance& one) const {
+    const Acquaintance* nearest = nullptr;
+    float nearest_mm = 0.0F;
+    for (const Acquaintance& gone : all_) {
+        const bool may_be = gone.hand_id != 0 && gone.hand_id != one.hand_id &&
+                            gone.seen < one.first_seen &&
+                            to_ms(one.first_seen - gone.seen) <= remembered_ms(s);
+        if (!may_be || !same_hand(s, gone.limb, one.limb)) {
+            continue;
+        }
+        const float off_mm = (one.first_mm - gone.limb.palm_mm).norm();
+        if (nearest == nullptr || off_mm < nearest_mm) {
+            nearest = &gone;
+            nearest_mm = off_mm;
+        }
+    }
+    return nearest;
+}
+
+void Company::forget_trust() noexcept {
+    for (Acquaintance& one : all_) {
+        one.forget_trust();
+    }
+}
+
+}  // namespace xtrack::recognise
