@@ -84,7 +84,8 @@ class GestureRecogniser {
     /// for others and for a hand that is not there.
     [[nodiscard]] double progress(int hand_id, GestureType type) const noexcept;
 
-    /// The hand that owns the session (GestureSettings::engage); 0: nobody's.
+    /// The hand that owns the session (GestureSettings::engage); 0: nobody's. Its id changes
+    /// without an event where a tracker has mixed up two hands.
     [[nodiscard]] int session_owner() const noexcept;
 
     /// Lets time pass without a frame, so that a lost hand is noticed: call it at 50 Hz or more

@@ -74,7 +74,8 @@ struct GestureSettings {
     bool engage_by_stillness = true;
     bool engage_by_wave = true;
     bool engage_by_raise = true;
-    /// Slower than this for so long is still; as long until a second hand joins. 20..500; 50..3000.
+    /// Slower than this for so long is still; as long a second hand must fit the owner's body to
+    /// join. 20..500; 50..3000.
     double engage_still_mmps = 200.0;
     double engage_ms = 300.0;
     /// Outside for so long, or idle (no gesture, moved by less) for so long, and it is over.
@@ -86,8 +87,9 @@ struct GestureSettings {
     /// nobody else takes it meanwhile. 0..10000; 20..1000.
     double engage_return_ms = 2000.0;
     double engage_return_mm = 300.0;
-    /// Elbows of one body lie no farther apart: to the side, up, and in depth. 100..2000. Shoulders
-    /// of adults are 400 wide, and elbows spread beside them.
+    /// Elbows of an adult's body lie no farther apart: to the side, up, and in depth; of smaller
+    /// hands in proportion. A second hand joins well within. 100..2000. Shoulders of adults are 400
+    /// wide, and elbows spread beside them.
     double body_width_mm = 750.0;
     double body_height_mm = 300.0;
     double body_depth_mm = 300.0;
