@@ -126,9 +126,11 @@ const HandReport* Engagement::summons(const Context& c, std::span<const HandRepo
 const HandReport* Engagement::mixed_up(const Context& c, std::span<const HandReport> hands,
                                        const HandReport& owner, double ms) {
     const Limb& now = company_.of(owner_).limb;
-    // Two ids change places from one frame to the next.
+    // Two ids change places from one frame to the next, or the hand that was the owner's is a new
+    // one.
     const auto in_its_place = [&](const HandReport& r) {
-        return r.hand->id != owner_ &&
+        const bool comes = r.jumped || company_.of(r.hand->id).first_seen == c.sensor;
+        return r.hand->id != owner_ && comes &&
                (r.hand->palm_mm - owner.expected_mm).norm() <= owner.reach_mm;
     };
     if (owner.jumped) {
