@@ -269,15 +269,16 @@ struct GestureSettings {
 
     // --- press -----------------------------------------------------------------------------------
     /// The way toward the screen that makes a virtual force of 1: at the slow speed, at the fast
-    /// one and above, quadratic between; slower adds nothing. 20..1000; 5..200. TouchFree AirPush.
+    /// one and above, quadratic between; slower adds nothing. 20..1000; 5..200. TouchFree AirPush,
+    /// whose 42 mm at 150 mm/s hands on a table reach.
     double press_slow_mmps = 150.0;
-    double press_slow_way_mm = 42.0;
+    double press_slow_way_mm = 50.0;
     double press_fast_mmps = 500.0;
     double press_fast_way_mm = 8.0;
     /// Off the screen's normal; without drag a press is only a click, and need not be followed
-    /// aside. 5..85. TouchFree.
+    /// aside. 5..85. TouchFree, which has 15 without drag; arms that press swing farther aside.
     double press_cone_deg = 65.0;
-    double press_cone_without_drag_deg = 15.0;
+    double press_cone_without_drag_deg = 20.0;
     double press_decay_mm = 50.0;  ///< so far aside, and the force is gone. 10..500. TouchFree.
     /// UP below it; again from below this. 0.5..0.99; 0..0.95. TouchFree's 0.97 and 0.87 chatter at
     /// the noise of a webcam.

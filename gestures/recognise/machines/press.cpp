@@ -67,7 +67,7 @@ void PressMachine::let_up(const Context& c) {
     const GestureSettings& s = c.settings;
     const Vec3f place_mm = place_of(c);
     if (place_mm.z() < deepest_mm_.z()) {
-        deepest_mm_.z() = place_mm.z();
+        deepest_mm_ = place_mm;  // aside as well: a slanted press that goes on is none that lets up
     }
     const Vec3f off_mm = place_mm - deepest_mm_;
     force_ = 1.0 - static_cast<double>(off_mm.z()) / s.press_slow_way_mm;

@@ -74,6 +74,26 @@ TEST(Press, ASidewaysMovementIsNone) {
     EXPECT_TRUE(stage.explained("press", "off the normal"));
 }
 
+TEST(Press, ASlantedOneIsOneClick) {
+    // 18 degrees off the normal, and still deeper after it is down.
+    Stage stage(pressing());
+    stage.play(Actor{{{0, at(0)},
+                      {1000, at(0)},
+                      {1450, at(58, 0, 220)},
+                      {1750, at(58, 0, 220)},
+                      {3000, at(0)},
+                      {3800, at(0)}}},
+               60);
+    ASSERT_THAT(stage.story(), ElementsAre("press begin", "press end"));
+    EXPECT_GE(stage.first(GestureType::press, EventPhase::end)->sensor, Stamp::from_us(1'750'000))
+        << "it let up while it went on";
+    // A steeper one is none.
+    Stage aside(pressing());
+    aside.play(Actor{{{0, at(0)}, {1000, at(0)}, {1450, at(90, 0, 220)}, {1750, at(90, 0, 220)}}},
+               60);
+    EXPECT_THAT(aside.story(), IsEmpty());
+}
+
 TEST(Press, ComesUpByItself) {
     Stage stage(pressing());
     stage.play(Actor{{{0, at(0)}, {600, at(0)}, {800, at(0, 0, 340)}, {4000, at(0, 0, 340)}}}, 60);
