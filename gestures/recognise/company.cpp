@@ -9,8 +9,8 @@ namespace xtrack::recognise {
 
 namespace {
 
-// Doubt grows to this in so long; whoever stands beside for minutes has to fit five times as long
-// as one who has just come.
+// Doubt grows as trust does, and no farther than this: whoever has stood beside for minutes has to
+// fit seven times as long as one who has just come.
 constexpr double kMostDoubt = 6.0;
 // A gap in the frames is no evidence.
 constexpr double kLongestStepMs = 100.0;
