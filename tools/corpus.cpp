@@ -142,10 +142,10 @@ class Plan {
             plan_manners();
         }
         if (wants(Part::everyday)) {
-            plan_everyday(false);
+            plan_everyday(Part::everyday);
         }
         if (wants(Part::engaged)) {
-            plan_everyday(true);
+            plan_everyday(Part::engaged);
         }
         if (wants(Part::passers_by)) {
             plan_passers_by();
@@ -270,15 +270,15 @@ class Plan {
         return static_cast<std::uint64_t>(std::ceil(options_.hours * 3600.0 / kSequenceS));
     }
 
-    /// @param engage whether it takes a session to be heard
-    void plan_everyday(bool engage) {
+    /// @param part everyday, or engaged: it takes a session to be heard
+    void plan_everyday(Part part) {
         for (const Wanted& set : sets_) {
             if (!set.everyday) {
                 continue;
             }
-            const std::size_t group = add_group(engage ? Part::engaged : Part::everyday, set.name);
+            const std::size_t group = add_group(part, set.name);
             GestureSettings settings = set.at_rest;
-            settings.engage = engage;
+            settings.engage = part == Part::engaged;
             for (std::uint64_t i = 0; i < pieces(); ++i) {
                 add_job(group, settings,
                         [person = seed(100'000 + i), seen = corpus::seen_by(i, options_.fps)] {

@@ -2,6 +2,7 @@
 #include "gestures/recognise/company.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "gestures/recognise/motion_history.hpp"
 
@@ -21,8 +22,17 @@ double remembered_ms(const GestureSettings& s) { return s.gone_ms + s.engage_ret
 }  // namespace
 
 void Acquaintance::forget_trust() noexcept {
-    trust = against_ms = 0.0;
+    trust = against_ms = same_side_ms = 0.0;
     ruled_out = false;
+}
+
+void Acquaintance::trade_trust(Acquaintance& other) noexcept {
+    std::swap(trust, other.trust);
+    std::swap(against_ms, other.against_ms);
+    std::swap(same_side_ms, other.same_side_ms);
+    std::swap(ruled_out, other.ruled_out);
+    std::swap(asked, other.asked);
+    std::swap(outside_ms, other.outside_ms);
 }
 
 void Acquaintance::weigh(const GestureSettings& s, SameBody verdict, bool settled, bool in,
@@ -30,16 +40,20 @@ void Acquaintance::weigh(const GestureSettings& s, SameBody verdict, bool settle
     const auto doubt = [&](double full_ms) {
         trust = std::max(std::min(trust, 0.0) - ms / full_ms, -kMostDoubt);
     };
+    // What does not go on is forgotten as fast as it was learnt.
+    const auto count = [&](double& sum_ms, bool goes_on) {
+        sum_ms = std::max(sum_ms + (goes_on ? ms : -ms), 0.0);
+    };
+    count(against_ms, verdict == SameBody::no);
+    count(same_side_ms, verdict == SameBody::same_side && in);
     switch (verdict) {
         case SameBody::no:
-            against_ms += ms;
             ruled_out = against_ms >= (in ? s.engage_leave_ms : s.hand_valid_ms);
             trust = in && !ruled_out ? trust : std::min(trust, 0.0);
             break;
         case SameBody::same_side:
             // A tracker may change its mind.
-            against_ms += in ? ms : 0.0;
-            trust = in && against_ms < s.engage_leave_ms ? trust : std::min(trust, 0.0);
+            trust = in && same_side_ms < s.engage_leave_ms ? trust : std::min(trust, 0.0);
             break;
         case SameBody::far:
             if (!in) {
@@ -52,7 +66,6 @@ void Acquaintance::weigh(const GestureSettings& s, SameBody verdict, bool settle
             }
             break;
         case SameBody::yes:
-            against_ms = std::max(against_ms - ms, 0.0);
             if (settled) {
                 trust = std::min(trust + ms / s.engage_ms, 1.0);
             } else if (!in) {
@@ -70,8 +83,7 @@ double Company::note(const GestureSettings& s, std::span<const HandReport> hands
             one = {};
             one.hand_id = r.hand->id;
             one.first_seen = now;
-            one.first_mm = limb.palm_mm;
-            one.limb = limb;
+            one.first = one.limb = limb;
         }
         // What was known once is not forgotten while it is not seen.
         const Limb was = one.limb;
@@ -103,20 +115,30 @@ Acquaintance& Company::of(int hand_id) {
 const Acquaintance* Company::before(const GestureSettings& s, const Acquaintance& one) const {
     const Acquaintance* nearest = nullptr;
     float nearest_mm = 0.0F;
+    // Where it was then, with what is known of it by now.
+    Limb then = one.limb;
+    then.palm_mm = one.first.palm_mm;
+    then.forearm = one.first.forearm;
     for (const Acquaintance& gone : all_) {
         const bool may_be = gone.hand_id != 0 && gone.hand_id != one.hand_id &&
                             gone.seen < one.first_seen &&
                             to_ms(one.first_seen - gone.seen) <= remembered_ms(s);
-        if (!may_be || !same_hand(s, gone.limb, one.limb)) {
+        if (!may_be || !same_hand(s, gone.limb, then)) {
             continue;
         }
-        const float off_mm = (one.first_mm - gone.limb.palm_mm).norm();
+        const float off_mm = (then.palm_mm - gone.limb.palm_mm).norm();
         if (nearest == nullptr || off_mm < nearest_mm) {
             nearest = &gone;
             nearest_mm = off_mm;
         }
     }
     return nearest;
+}
+
+void Company::forget_stillness() noexcept {
+    for (Acquaintance& one : all_) {
+        one.still = false;
+    }
 }
 
 void Company::forget_trust() noexcept {

@@ -29,7 +29,7 @@ struct HandReport {
 struct Acquaintance {
     int hand_id = 0;  ///< 0: free
     Limb limb;
-    Vec3f first_mm = Vec3f::Zero();
+    Limb first;  ///< when it was first seen
     Stamp first_seen;
     Stamp seen;
 
@@ -40,13 +40,16 @@ struct Acquaintance {
 
     // While somebody has.
     double trust = 0.0;       ///< joins at 1; below 0 there is something to make up for
-    double against_ms = 0.0;  ///< so long something forbids it
+    double against_ms = 0.0;  ///< so long its arm or its size forbids it
+    double same_side_ms = 0.0;
     bool ruled_out = false;   ///< until it leaves
     bool asked = false;       ///< whose hand it was before it got this id
     double outside_ms = 0.0;  ///< of the zone
     Stamp met;                ///< last close to the owner: a tracker may have mixed them up
 
     void forget_trust() noexcept;
+    /// Two trackers' ids have changed places.
+    void trade_trust(Acquaintance& other) noexcept;
     /// @param settled it may act, is slow and in the zone
     /// @param in it has joined
     void weigh(const GestureSettings& s, SameBody verdict, bool settled, bool in,
@@ -64,6 +67,7 @@ class Company {
     [[nodiscard]] const Acquaintance* before(const GestureSettings& s,
                                              const Acquaintance& one) const;
     void forget_trust() noexcept;
+    void forget_stillness() noexcept;
 
  private:
     static constexpr std::size_t kMost = 4 * kMaxHands;

@@ -161,15 +161,17 @@ const HandReport* Engagement::mixed_up(const Context& c, std::span<const HandRep
 }
 
 void Engagement::hand_over(const Context& c, const HandReport& to) {
-    Acquaintance& stranger = company_.of(owner_);
+    Acquaintance& other = company_.of(owner_);
     Acquaintance& owner = company_.of(to.hand->id);
-    stranger.forget_trust();
-    owner.forget_trust();
-    stranger.met = owner.met = Stamp{};
+    // What is known of each goes with the hand; where they are has been noted under the new ids.
+    other.trade_trust(owner);
+    other.met = owner.met = Stamp{};
+    other.limb.side = Chirality::unknown;
+    other.limb.length_mm = 0.0F;
     owner.limb.side = owner_limb_.side;
     owner.limb.length_mm = owner_limb_.length_mm;
+    second_ = second_ == to.hand->id ? owner_ : second_;
     owner_ = to.hand->id;
-    second_ = 0;
     other_ms_ = 0.0;
     handle(c, Event::owned, {"its hand has another id now", static_cast<double>(owner_), 0.0});
 }
@@ -227,6 +229,7 @@ void Engagement::watch_others(const Context& c, std::span<const HandReport> hand
         }
         if (in && (one.trust <= 0.0 || one.ruled_out || one.outside_ms >= s.engage_leave_ms)) {
             second_ = 0;
+            one.against_ms = one.same_side_ms = 0.0;
         }
         if (second_ == 0 && r.present && inside && one.trust >= 1.0 && !one.ruled_out) {
             second_ = id;
@@ -303,6 +306,7 @@ std::optional<EngageState> Engagement::idle(const Context& c, Event event) {
             other_ms_ = 0.0;
             kept_ = false;
             onset_ = company_.of(owner_).still ? company_.of(owner_).still_since : c.sensor;
+            company_.forget_stillness();  // nobody looks at it while there is a session
             inside_at_ = busy_at_ = c.sensor;
             rest_mm_ = owner_hand_.palm_mm;
             gesture_id_ = c.next_gesture_id++;

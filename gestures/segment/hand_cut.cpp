@@ -100,11 +100,15 @@ bool HandCut::cut(const DepthFrame& depth, const CoarseScene& coarse, const Palm
 void HandCut::set_ends(const PalmCandidate& palm, std::span<const PalmPrior> expected) {
     ends_[0] = {palm.arm_direction, palm.wrist_mm};
     end_count_ = 1;
+    if (palm.prior < 0) {
+        return;
+    }
     for (std::size_t m = 0; m < expected.size() && end_count_ < ends_.size(); ++m) {
         const Vec3f d = expected[m].palm_mm - palm.centre_mm;
         const float distance = d.norm();
-        // What is nearer than a palm is wide is no other hand, or was none.
-        if (palm.prior >= 0 && palm.prior != static_cast<int>(m) && distance > palm.radius_mm) {
+        // A palm that overlaps this one is no other hand, or was none.
+        const bool apart = distance > palm.radius_mm + expected[m].palm_radius_mm;
+        if (palm.prior != static_cast<int>(m) && apart) {
             ends_[end_count_++] = {d / distance, 0.5F * distance};
         }
     }

@@ -146,6 +146,7 @@ Result<Tally> run(const Sequence& sequence, const GestureSettings& settings) {
     };
     std::vector<GestureEvent> heard;  // of hands that may act
     Tally of_strangers;
+    double engaged_s = 0.0;
     bool owned = false;  // by one who has been there ever since
     const auto take = [&](std::span<const GestureEvent> events) {
         for (const GestureEvent& event : events) {
@@ -174,7 +175,7 @@ Result<Tally> run(const Sequence& sequence, const GestureSettings& settings) {
     follow(sequence, tracked, [&](const HandFrame& frame) {
         take(recogniser->push(frame));
         if (recogniser->session_owner() != 0) {
-            of_strangers.engaged_hours += 1.0 / (sequence.frame_hz * 3600.0);
+            engaged_s += 1.0 / sequence.frame_hz;
         }
     });
     take(recogniser->finish());
@@ -183,6 +184,7 @@ Result<Tally> run(const Sequence& sequence, const GestureSettings& settings) {
         scorer.add(heard, sequence.labels, Duration{std::llround(sequence.end_s * 1e9)});
     Tally tally = tally_of(sequence, scorer.gestures(), judged, hand_of, refusals);
     tally.add(of_strangers);
+    tally.engaged_hours = engaged_s / 3600.0;
     return tally;
 }
 

@@ -34,7 +34,7 @@ struct Tally {
     std::map<std::string, GestureScore> scores;
     std::vector<Finding> findings;
     double hours = 0.0;
-    double engaged_hours = 0.0;  ///< of these, with a session
+    double engaged_hours = 0.0;  ///< of these, with a session of anybody's
     int sequences = 0;
     int false_events = 0;    ///< of hands that were listened to
     int strange_events = 0;  ///< of hands that should not have been

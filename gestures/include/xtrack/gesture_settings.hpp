@@ -121,8 +121,8 @@ struct GestureSettings {
     /// fist, and a fist that is carried does all else that a swipe does. 0 = any hand. 0..1.
     /// Measured: swipes 0.46..1, fists that are carried 0.2..0.35.
     double swipe_open = 0.4;
-    /// Grab value over the stroke, at most: the same where it is known. 0..1. Measured: swipes of
-    /// joints 0..0.34, of cameras 0..0.05.
+    /// Grab value, mean over the stroke, at most; of no effect where it is known in less than half
+    /// of the images. 0..1. Measured: swipes of joints 0..0.34, of cameras 0..0.05.
     double swipe_grab = 0.45;
     /// After a commit the opposite direction is barred so long *and* until the hand has been
     /// slower than swipe_rest_mmps. 0..2000; 10..200. The return stroke is no swipe.
@@ -135,8 +135,8 @@ struct GestureSettings {
     /// The hand's flat side leads when palm direction . motion is above it. 0.1..1. Measured on
     /// joints: swipes 0.6..1.0, hands carried from place to place -0.3..0.4.
     double swipe_facing = 0.5;
-    /// The back of the hand leads on the way back too, so more is asked. 100..3000; 40..600.
-    /// Measured: returns 230..340 mm/s.
+    /// The back of the hand leads on the way back too, and hands are held up flat on their way to
+    /// something else, so more is asked. 100..3000; 40..600. Measured: returns 230..340 mm/s.
     double swipe_back_speed_mmps = 380.0;
     double swipe_back_length_mm = 120.0;
     /// A hand that is merely carried (flat side not in front) or that points must move with this
@@ -162,13 +162,14 @@ struct GestureSettings {
     /// Slower for so long before the next. 20..500; 0..2000. NiTE1.
     double push_stable_mmps = 130.0;
     double push_stable_ms = 360.0;
-    /// Within so long after a thrust ended, an opposite one that is no faster brings the hand back.
-    /// 0..5000.
+    /// Within so long after a thrust ended, an opposite one brings the hand back, unless it is 1.2
+    /// times as fast. 0..5000.
     double push_return_memory_ms = 1500.0;
     /// As swipe_facing, for the palm toward the screen. 0..1.
     double push_facing = 0.5;
     /// A pull goes at least so far, because hands draw back to rest after whatever they
-    /// did. 40..600. Measured: hands that draw back 100..120, pulls 120..300.
+    /// did. 40..600. Measured: hands that draw back 100..130, a pull 300; those of the simulated
+    /// people have 120..200, so that it is set where few of the first and most of these count.
     double pull_length_mm = 120.0;
 
     // --- pinch -----------------------------------------------------------------------------------
@@ -241,8 +242,8 @@ struct GestureSettings {
     double tap_open_deg = 15.0;
     double tap_open_share = 0.5;
     double tap_within_ms = 1500.0;
-    /// The hand points, before and after: mean extension of the three others at most. 0..1.
-    /// Measured: taps 0.1..0.45.
+    /// The hand points, before and after: mean extension of the three others at most; above it the
+    /// hand is open, of which more is asked (docs/gestures/tap.md). 0..1. Measured: taps 0.1..0.45.
     double tap_pointing_extension = 0.5;
     /// The palm stays within. 10..500. Measured: taps 30..105, letters drawn in the air 140..215.
     double tap_palm_mm = 120.0;
@@ -269,8 +270,8 @@ struct GestureSettings {
 
     // --- press -----------------------------------------------------------------------------------
     /// The way toward the screen that makes a virtual force of 1: at the slow speed, at the fast
-    /// one and above, quadratic between; slower adds nothing. 20..1000; 5..200. TouchFree AirPush,
-    /// whose 42 mm at 150 mm/s hands on a table reach.
+    /// one and above, quadratic between; slower adds nothing. 20..1000; 5..200. TouchFree
+    /// AirPush has 42 mm at 150 mm/s, which hands that work on a table reach.
     double press_slow_mmps = 150.0;
     double press_slow_way_mm = 50.0;
     double press_fast_mmps = 500.0;

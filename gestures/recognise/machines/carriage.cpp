@@ -24,11 +24,15 @@ class Mean {
             ++count_;
         }
     }
-    [[nodiscard]] double value() const { return count_ > 0 ? sum_ / count_ : -1.0; }
+    /// @param least so many must be known
+    [[nodiscard]] double value(std::size_t least = 1) const {
+        return count_ >= std::max<std::size_t>(least, 1) ? sum_ / static_cast<double>(count_)
+                                                         : -1.0;
+    }
 
  private:
     double sum_ = 0.0;
-    int count_ = 0;
+    std::size_t count_ = 0;
 };
 
 double cross(const Vec3f& a, const Vec3f& b) {
@@ -48,38 +52,41 @@ double bend_of(const MotionHistory& history, std::size_t samples) {
         area += 0.5 * cross(history.at(i).palm_mm - from, history.at(i - 1).palm_mm - from);
     }
     // A segment of a circle: two thirds of chord times height, and height over half the chord is
-    // the tangent of a quarter of the angle. The way lies to the right of the chord where it turns
-    // to the left.
-    const double height_mm = 1.5 * area / chord_mm;
+    // the tangent of a quarter of the angle.
+    const double height_mm = 1.5 * std::abs(area) / chord_mm;
     return 4.0 * std::atan(2.0 * height_mm / chord_mm) * 180.0 / std::numbers::pi;
 }
 
 }  // namespace
 
 bool Carriage::is_upright() const noexcept {
-    return distal.y() >= kUpright && extension >= kFlatExtension && grab <= kFlatGrab;
+    return distal.y() >= kUpright && extension.all >= kFlatExtension && grab <= kFlatGrab;
 }
 
-double extension_in(const MotionHistory& history, std::size_t back, std::size_t count) noexcept {
-    Mean fingers;
+Extensions extensions_in(const MotionHistory& history, std::size_t back,
+                         std::size_t count) noexcept {
+    Mean index;
+    Mean outer;
+    Mean all;
     for (std::size_t i = back; i < std::min(back + count, history.size()); ++i) {
+        const MotionSample& sample = history.at(i);
         for (const Finger f : {Finger::index, Finger::middle, Finger::ring, Finger::little}) {
-            fingers.add(history.at(i).extension[static_cast<std::size_t>(f)]);
+            all.add(sample.extension[static_cast<std::size_t>(f)]);
         }
+        index.add(sample.extension[static_cast<std::size_t>(Finger::index)]);
+        outer.add(sample.outer_extension());
     }
-    return fingers.value();
+    return {index.value(), outer.value(), all.value()};
 }
 
 Carriage carriage(const MotionHistory& history, std::size_t samples, const Vec3f& along) noexcept {
     Carriage held;
     Vec3f facing = Vec3f::Zero();
-    Mean outer;
     Mean grab;
     for (std::size_t i = 0; i < samples; ++i) {
         const MotionSample& sample = history.at(i);
         facing += sample.facing;
         held.distal += sample.distal;
-        outer.add(sample.outer_extension());
         grab.add(sample.grab);
     }
     held.facing_known = facing.norm() > 0.0F;
@@ -95,9 +102,8 @@ Carriage carriage(const MotionHistory& history, std::size_t samples, const Vec3f
         held.leads = std::abs(held.leads);
         held.shown = std::abs(held.shown);
     }
-    held.extension = extension_in(history, 0, samples);
-    held.outer_extension = outer.value();
-    held.grab = grab.value();
+    held.extension = extensions_in(history, 0, samples);
+    held.grab = grab.value((samples + 1) / 2);
     held.bend_deg = bend_of(history, samples);
     return held;
 }

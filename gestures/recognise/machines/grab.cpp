@@ -14,6 +14,8 @@
 
 #include <algorithm>
 
+#include "gestures/recognise/machines/carriage.hpp"
+
 namespace xtrack::recognise {
 
 namespace {
@@ -25,8 +27,8 @@ constexpr Duration kStrengthLost = std::chrono::milliseconds{300};
 constexpr float kPointingDeg = 60.0F;
 constexpr float kFoldedDeg = 150.0F;
 // Extensions of a camera's hand that points, on average over so long.
-constexpr float kOut = 0.7F;
-constexpr float kFolded = 0.2F;
+constexpr double kOut = 0.7;
+constexpr double kFolded = 0.2;
 constexpr Duration kPointsFor = std::chrono::milliseconds{200};
 // Of a hand whose thumb and index tip meet: a pinch bends the index less than the fingers beside it
 // (measured: 15..60 degrees), fingers that grab something small bend alike (5).
@@ -38,15 +40,8 @@ float flexion(const MotionSample& hand, Finger finger) {
 
 /// A camera's hand, over a while: a fist that closes folds its index, too.
 bool seems_to_point(const MotionHistory& history) {
-    float index = 0.0F;
-    float outer = 0.0F;
-    const std::size_t count = history.count_within(kPointsFor);
-    for (std::size_t i = 0; i < count; ++i) {
-        index += history.at(i).extension[static_cast<std::size_t>(Finger::index)];
-        outer += history.at(i).outer_extension();
-    }
-    const auto n = static_cast<float>(count);
-    return count > 1 && index >= kOut * n && outer >= 0.0F && outer <= kFolded * n;
+    const Extensions mean = extensions_in(history, 0, history.count_within(kPointsFor));
+    return mean.index >= kOut && mean.outer >= 0.0 && mean.outer <= kFolded;
 }
 
 /// False where not all four fingers are known.

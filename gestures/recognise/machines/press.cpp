@@ -67,7 +67,14 @@ void PressMachine::let_up(const Context& c) {
     const GestureSettings& s = c.settings;
     const Vec3f place_mm = place_of(c);
     if (place_mm.z() < deepest_mm_.z()) {
-        deepest_mm_ = place_mm;  // aside as well: a slanted press that goes on is none that lets up
+        // Aside as well, within the cone: a slanted press that goes on is none that lets up.
+        const float deeper_mm = deepest_mm_.z() - place_mm.z();
+        const double cone_rad = s.press_cone_without_drag_deg * std::numbers::pi / 180.0;
+        const float most_mm = deeper_mm * static_cast<float>(std::tan(cone_rad));
+        const Vec2f aside_mm = (place_mm - deepest_mm_).head<2>();
+        const float share = std::min(1.0F, most_mm / std::max(aside_mm.norm(), most_mm));
+        deepest_mm_.head<2>() += share * aside_mm;
+        deepest_mm_.z() = place_mm.z();
     }
     const Vec3f off_mm = place_mm - deepest_mm_;
     force_ = 1.0 - static_cast<double>(off_mm.z()) / s.press_slow_way_mm;

@@ -141,8 +141,8 @@ RaiseMachine::Rise RaiseMachine::measure(const Context& c) const {
     const Carriage held =
         carriage(history, std::max<std::size_t>(history.count_within(from_ms(s.raise_still_ms)), 1),
                  Vec3f::UnitY());
-    if (held.extension >= 0.0 && !held.is_upright()) {
-        rise.refusal = {"it is not held up flat", held.extension, 0.0};
+    if (held.extension.all >= 0.0 && !held.is_upright()) {
+        rise.refusal = {"it is not held up flat", 0.0, 0.0};
     }
     return rise;
 }

@@ -28,6 +28,9 @@ constexpr float kLookBackShare = 0.5F;  // of swipe_dies_mmps: still part of the
 constexpr float kWindUpShare = 1.2F;
 constexpr Duration kSeenBefore = std::chrono::milliseconds{300};
 constexpr double kShownFacing = 0.7;  // palm toward the screen, 45 degrees
+// A palm that jumps, or two hands whose tracker exchanges their ids. Swipes at a mean of 1.5 m/s
+// have 1.9 m/s in their first 100 mm.
+constexpr double kFastestMmps = 4000.0;
 constexpr float kConfidenceFloor = 0.5F;
 // A hand that turns by more has ended its way in and begun something else.
 constexpr double kTurnedDeg = 60.0;
@@ -88,6 +91,58 @@ Direction direction_of(const GestureSettings& s, const Vec3f& v) {
         }
     }
     return Direction::none;
+}
+
+/// How a hand is held in a stroke, the table of docs/gestures/swipe.md.
+enum class Manner {
+    paddle,   ///< the palm leads
+    plain,    ///< the palm is shown, or nothing is known
+    guarded,  ///< the back leads, or up or down held up flat: as hands come back and are raised,
+              ///< too
+    carried,
+    pointing,
+};
+
+Manner manner_of(const GestureSettings& s, const Carriage& held, bool from_joints, bool level) {
+    const double outer = held.extension.outer;
+    if (from_joints && outer >= 0.0 && outer < s.swipe_pointing_extension) {
+        return Manner::pointing;
+    }
+    // Sideways a palm leads or shows itself to the screen on purpose; up and down it does so
+    // whenever a hand is raised or dropped, unless it is held up flat.
+    const bool shows = !held.facing_known || held.shown >= kShownFacing;
+    if (!level) {
+        return shows && held.is_upright() ? Manner::guarded : Manner::carried;
+    }
+    if (held.leads >= s.swipe_facing) {
+        return Manner::paddle;
+    }
+    if (held.leads <= -s.swipe_facing) {
+        return Manner::guarded;
+    }
+    return shows ? Manner::plain : Manner::carried;
+}
+
+struct Least {
+    double mm = 0.0;
+    double mmps = 0.0;
+    const char* shorter = "short";
+    const char* slower = "slow";
+};
+
+Least least_of(const GestureSettings& s, Manner manner) {
+    switch (manner) {
+        case Manner::paddle: return {s.swipe_length_mm, s.swipe_paddle_speed_mmps};
+        case Manner::plain: return {s.swipe_length_mm, s.swipe_speed_mmps};
+        case Manner::guarded: return {s.swipe_back_length_mm, s.swipe_back_speed_mmps};
+        case Manner::carried:
+            return {s.swipe_carried_length_mm, s.swipe_carried_speed_mmps,
+                    "short for a carried hand", "slow for a carried hand"};
+        case Manner::pointing:
+            return {s.swipe_carried_length_mm, s.swipe_carried_speed_mmps,
+                    "short for a pointing hand", "slow for a pointing hand"};
+    }
+    return {};
 }
 
 }  // namespace
@@ -234,6 +289,11 @@ SwipeMachine::Event SwipeMachine::judge(const Context& c, const Vec3f& velocity,
     const double lasted_s = to_seconds(now.stamp - stroke_.start);
     stroke_.length_mm = length_mm;
     stroke_.speed_mmps = lasted_s > 0.0 ? length_mm / lasted_s : 0.0;
+    if (stroke_.speed_mmps > kFastestMmps) {
+        drop_until_ = now.stamp;
+        refusal = {"faster than a hand", stroke_.speed_mmps, kFastestMmps};
+        return Event::astray;
+    }
     if (length_mm < s.swipe_length_mm) {
         return slow ? Event::slow : Event::moving;
     }
@@ -267,8 +327,8 @@ Refusal SwipeMachine::objection(const Context& c, bool stops) const {
 
     const std::size_t samples = c.history.count_within(now.stamp - stroke_.start);
     const Carriage held = carriage(c.history, samples, axis);
-    if (std::abs(held.bend_deg) > s.swipe_bend_deg) {
-        return {"bends", std::abs(held.bend_deg), s.swipe_bend_deg};
+    if (held.bend_deg > s.swipe_bend_deg) {
+        return {"bends", held.bend_deg, s.swipe_bend_deg};
     }
     if (held.grab > s.swipe_grab) {
         return {"the hand is closed", held.grab, s.swipe_grab};
@@ -276,41 +336,21 @@ Refusal SwipeMachine::objection(const Context& c, bool stops) const {
     if (!now.from_joints) {
         // Fingers blur in a stroke: those of an open hand were seen before it.
         const std::size_t until = c.history.count_within(now.stamp - stroke_.start + kSeenBefore);
-        const double before = extension_in(c.history, samples, until - samples);
-        const double open = std::max(held.extension, before);
+        const double before = extensions_in(c.history, samples, until - samples).all;
+        const double open = std::max(held.extension.all, before);
         if (open >= 0.0 && open < s.swipe_open) {
             return {"the hand is closed", open, s.swipe_open};
         }
     }
-    const bool points = now.from_joints && held.outer_extension >= 0.0 &&
-                        held.outer_extension < s.swipe_pointing_extension;
-    // Sideways a palm leads or shows itself to the screen on purpose; up and down it does so
-    // whenever a hand is raised or dropped, unless it is held up flat.
-    const bool level = horizontal(stroke_.direction);
-    const bool shows = !held.facing_known || held.shown >= kShownFacing;
-    const bool paddle = level && !points && held.leads >= s.swipe_facing;
-    const bool back =
-        !points && (level ? held.leads <= -s.swipe_facing : shows && held.is_upright());
-    const bool carried = points || !(paddle || back || (level && shows));
-    const double least_mm = carried ? s.swipe_carried_length_mm
-                            : back  ? s.swipe_back_length_mm
-                                    : s.swipe_length_mm;
-    const double least_mmps = carried  ? s.swipe_carried_speed_mmps
-                              : back   ? s.swipe_back_speed_mmps
-                              : paddle ? s.swipe_paddle_speed_mmps
-                                       : s.swipe_speed_mmps;
-    if (stroke_.length_mm < least_mm) {
-        return {points    ? "short for a pointing hand"
-                : carried ? "short for a carried hand"
-                          : "short",
-                stroke_.length_mm, least_mm};
+    const Manner manner = manner_of(s, held, now.from_joints, horizontal(stroke_.direction));
+    const Least least = least_of(s, manner);
+    if (stroke_.length_mm < least.mm) {
+        return {least.shorter, stroke_.length_mm, least.mm};
     }
-    if (stroke_.speed_mmps < least_mmps) {
-        return {points    ? "slow for a pointing hand"
-                : carried ? "slow for a carried hand"
-                          : "slow",
-                stroke_.speed_mmps, least_mmps};
+    if (stroke_.speed_mmps < least.mmps) {
+        return {least.slower, stroke_.speed_mmps, least.mmps};
     }
+    const bool carried = manner == Manner::carried || manner == Manner::pointing;
     if (carried && !stops) {
         return {"may turn a corner yet", 0.0, 0.0};
     }

@@ -86,6 +86,25 @@ TEST(Engage, OthersAreBystanders) {
     EXPECT_EQ(stage.recogniser.session_owner(), 1);
 }
 
+TEST(Engage, ABystandersRestOfBeforeDoesNotCount) {
+    GestureSettings s = sessions();
+    s.swipe = s.pull = false;
+    s.engage_by_wave = s.engage_by_raise = false;
+    Actor owner{
+        {{0, at(-150)}, {2500, at(-150)}, {2900, at(-150, 0, 1300)}, {6000, at(-150, 0, 1300)}}};
+    // Comes to rest beside the owner just before that has the session; to and fro when it ends, and
+    // slow only where it turns, which it does just then.
+    Actor other{{{0, at(450)}, {150, at(200)}, {1400, at(200)}}};
+    for (int i = 1; i <= 11; ++i) {
+        other.moments.push_back({1400.0 + 400.0 * i, at(i % 2 == 1 ? 450.0F : 200.0F)});
+    }
+    other.id = 2;
+    Stage stage(s);
+    stage.play({owner, other}, 60);
+    EXPECT_THAT(stage.story(), ElementsAre("engage begin", "engage end"));
+    EXPECT_EQ(stage.events.back().hand_id, 1);
+}
+
 TEST(Engage, ASecondHandOfTheSameBodyJoins) {
     Stage stage(sessions());
     Actor owner{{{0, at(-200)}, {6000, at(-200)}}};

@@ -94,6 +94,19 @@ TEST(Press, ASlantedOneIsOneClick) {
     EXPECT_THAT(aside.story(), IsEmpty());
 }
 
+TEST(Press, SlidingAsideLetsUpEvenWhereItCreepsDeeper) {
+    Stage stage(pressing());
+    stage.play(Actor{{{0, at(0)},
+                      {1000, at(0)},
+                      {1300, at(0, 0, 300)},
+                      {2100, at(200, 0, 295)},
+                      {3800, at(200, 0, 295)}}},
+               60);
+    ASSERT_THAT(stage.story(), ElementsAre("press begin", "press end"));
+    // A tenth of 50 mm aside.
+    EXPECT_LE(stage.first(GestureType::press, EventPhase::end)->sensor, Stamp::from_us(1'700'000));
+}
+
 TEST(Press, ComesUpByItself) {
     Stage stage(pressing());
     stage.play(Actor{{{0, at(0)}, {600, at(0)}, {800, at(0, 0, 340)}, {4000, at(0, 0, 340)}}}, 60);

@@ -221,6 +221,13 @@ TEST(Swipe, ACirclesFirstQuarterIsNone) {
     EXPECT_THAT(story_of_quarter(330.0F, 40.0), ElementsAre("swipe_right"));
 }
 
+TEST(Swipe, APalmThatJumpsIsNone) {
+    const Actor actor{{{0, at(0, 0)}, {800, at(0, 0)}, {801, at(-250, 0)}, {1800, at(-250, 0)}}};
+    for (const double fps : {30.0, 60.0, 120.0}) {
+        EXPECT_THAT(story_of(actor, fps), IsEmpty()) << fps;
+    }
+}
+
 TEST(Swipe, AHandHeldUpFlatSwipesUpAndDownByTheRuleOfBacks) {
     EXPECT_THAT(story_of(stroke(at(0, 180, 0), 450, Held::palm_screen)), ElementsAre("swipe_up"));
     EXPECT_THAT(story_of(stroke(at(0, 180, 0), 450, Held::palm_down)), IsEmpty());

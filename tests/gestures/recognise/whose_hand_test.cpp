@@ -239,6 +239,49 @@ TEST(WhoseHand, ExchangedIdsDoNotChangeTheOwner) {
     EXPECT_TRUE(stage.explained("engage", "its hand has another id now"));
 }
 
+TEST(WhoseHand, ExchangedIdsPardonNobody) {
+    std::vector<Actor> hands = exchanged();
+    // Of the owner's size, and beside it as its other hand would be, but for its arm at first.
+    Actor& theirs = hands[1];
+    theirs.palm_radius_mm = kAdultMm;
+    theirs.moments = {
+        {0, at(200), 70, false}, {400, at(200)}, {4500, at(200)}, {4850, at(-60)}, {6000, at(-60)}};
+    theirs.change = [](double ms, Hand& hand) {
+        hand.id = ms < 2000 ? 2 : 1;
+        hand.forearm = ms < 1900 ? Vec3f(Vec3f{0.9F, 0.4F, 0.1F}.normalized()) : kHangsRight;
+    };
+    hands[0].moments = {{0, at(-150)}, {6000, at(-150)}};
+    Stage stage(sessions());
+    stage.play(hands, 60);
+    EXPECT_EQ(stage.recogniser.session_owner(), 2);
+    EXPECT_THAT(stage.story(), ElementsAre("engage begin"));
+}
+
+TEST(WhoseHand, ExchangedIdsDoNotPartTheSecondHand) {
+    // The owner's own two hands.
+    Actor mine = owner(6000);
+    mine.change = [](double ms, Hand& hand) { hand.id = ms < 2500 ? 1 : 2; };
+    Actor other = guest();
+    other.change = [](double ms, Hand& hand) { hand.id = ms < 2500 ? 2 : 1; };
+    Stage stage(sessions());
+    stage.play({mine, other}, 60);
+    EXPECT_EQ(stage.recogniser.session_owner(), 2);
+    EXPECT_THAT(stage.story(), ElementsAre("engage begin", "swipe_left"));
+    EXPECT_EQ(stage.events.back().hand_id, 1);
+
+    // The owner's and a third one, a stranger's above them.
+    mine.change = [](double ms, Hand& hand) { hand.id = ms < 2500 ? 1 : 3; };
+    Actor stranger = owner(6000);
+    stranger.moments = {{0, at(0, 220), 70, false}, {500, at(0, 220)}, {6000, at(0, 220)}};
+    stranger.palm_radius_mm = kChildMm;
+    stranger.change = [](double ms, Hand& hand) { hand.id = ms < 2500 ? 3 : 1; };
+    Stage three(sessions());
+    three.play({mine, guest(), stranger}, 60);
+    EXPECT_EQ(three.recogniser.session_owner(), 3);
+    EXPECT_THAT(three.story(), ElementsAre("engage begin", "swipe_left"));
+    EXPECT_EQ(three.events.back().hand_id, 2);
+}
+
 TEST(WhoseHand, HandsThatAreMixedUpWhereTheyMeetAreToldApartAfterwards) {
     // The ids pass from one hand to the other while they are at one place; sides follow late.
     Actor mine = owner(8000);

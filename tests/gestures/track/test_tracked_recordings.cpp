@@ -210,10 +210,12 @@ TEST(Stills, FingersAreCounted) {
         made->reset();
         ASSERT_TRUE(reader.read_depth(static_cast<std::size_t>(std::stoi(row[0])), depth).ok());
         const HandFrame& hands = made->track(depth);
-        if (row.size() < 4 || row[3].rfind("1", 0) != 0 || row[2].empty()) {
+        ASSERT_GE(row.size(), 4U);
+        if (row[3].starts_with("0")) {
             EXPECT_EQ(hands.count, 0U) << "nobody shows a hand in image " << row[0];
             continue;
         }
+        ASSERT_FALSE(row[2].empty()) << "image " << row[0] << " has no count";
         ++with_hand;
         if (hands.count > 0) {
             ++found;
