@@ -28,12 +28,12 @@ Gate Ensemble::gate_of(HandSlot& slot) const {
     if (paused_) {
         return Gate::paused;
     }
-    if (settings_.engage && !engagement_.is_in(slot.hand.id)) {
-        return Gate::bystander;
-    }
+    // Who may not act does not ask for the session either.
+    const bool in = !settings_.engage || engagement_.is_in(slot.hand.id);
     return !slot.presence.may_act()   ? Gate::entering
            : slot.hand.touches_border ? Gate::border
            : slot.silence.is_silent() ? Gate::fist
+           : !in                      ? Gate::bystander
                                       : Gate::open;
 }
 

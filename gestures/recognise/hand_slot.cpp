@@ -2,6 +2,7 @@
 #include "gestures/recognise/hand_slot.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace xtrack::recognise {
 
@@ -20,7 +21,7 @@ void HandSlot::begin(const Hand& seen, Stamp now, bool in_view) {
     forget_motion();
     silence = {};
     machines = {};
-    was_active = summons = jumped = false;
+    was_active = summons = jumped = is_bystander = false;
     size.forget();
     presence.appear(now, in_view);
 }
@@ -122,6 +123,7 @@ void HandSlot::update(Context& c, bool two_handed) {
         }
     });
     const Gate gate = c.gate;
+    const bool asked = std::exchange(is_bystander, gate == Gate::bystander);
     summons = false;
     const std::size_t first = c.out.all().size();
     machines.each([&]<typename M>(M& machine) {
@@ -131,6 +133,9 @@ void HandSlot::update(Context& c, bool two_handed) {
         // A bystander may ask for the session, and is not heard otherwise.
         constexpr bool kSummons = requires { M::kSummons; };
         const bool asks = kSummons && gate == Gate::bystander;
+        if (kSummons && asked && !asks) {
+            machine.drop(c, CancelReason::none, "a session begins");  // it asked, that is all
+        }
         const std::size_t before = c.out.all().size();
         const std::size_t muted = c.out.muted_count();
         c.gate = asks ? Gate::open : gate;

@@ -115,6 +115,7 @@ struct HandSlot {
     Machines machines;
     bool was_active = false;  ///< a gesture was, in the last frame
     bool summons = false;     ///< it has just waved: for a session that is idle
+    bool is_bystander = false;
     HandSize size;
     /// Where no hand can be after the last two samples: another place of the arm, or another hand,
     /// was taken for it until now, or is from now on. @{

@@ -106,9 +106,9 @@ void HandCut::set_ends(const PalmCandidate& palm, std::span<const PalmPrior> exp
     for (std::size_t m = 0; m < expected.size() && end_count_ < ends_.size(); ++m) {
         const Vec3f d = expected[m].palm_mm - palm.centre_mm;
         const float distance = d.norm();
-        // A palm that overlaps this one is no other hand, or was none.
-        const bool apart = distance > palm.radius_mm + expected[m].palm_radius_mm;
-        if (palm.prior != static_cast<int>(m) && apart) {
+        // A palm whose middle lies in this one's circle is no other hand, or was none. Those of
+        // hands that touch overlap.
+        if (palm.prior != static_cast<int>(m) && distance > palm.radius_mm) {
             ends_[end_count_++] = {d / distance, 0.5F * distance};
         }
     }

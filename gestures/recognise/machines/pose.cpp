@@ -175,6 +175,10 @@ PoseMachine::Event PoseMachine::judge(const Context& c, Refusal& refusal) {
                                                       : Event::wavers;
     }
     if (score_ < s.pose_begin) {
+        // Fingers are taken for one another for a moment.
+        if (state() == State::shown && to_ms(now - fits_at_) < s.pose_end_ms) {
+            return Event::fits;
+        }
         refusal = {state() == State::shown ? "wavers" : "", score_, s.pose_begin};
         return Event::wavers;
     }
@@ -184,6 +188,7 @@ PoseMachine::Event PoseMachine::judge(const Context& c, Refusal& refusal) {
         refusal = {"the palm moves", palm_mmps, s.pose_palm_mmps};
         return Event::wavers;
     }
+    fits_at_ = now;
     if (state() != State::shown || to_ms(now - shown_at_) < s.pose_hold_ms) {
         return Event::fits;
     }
@@ -233,7 +238,6 @@ std::optional<PoseMachine::State> PoseMachine::shown(const Context& c, Event eve
         case Event::fits: return State::shown;
         case Event::enough:
             onset_ = shown_at_;
-            fits_at_ = c.sensor;
             gesture_id_ = c.next_gesture_id++;
             send(c, EventPhase::begin);
             return State::held;

