@@ -104,6 +104,7 @@ constexpr std::array kFields{
     number<&S::swipe_speed_mmps>("swipe_speed_mmps", 100.0, 3000.0),
     number<&S::swipe_paddle_speed_mmps>("swipe_paddle_speed_mmps", 100.0, 3000.0),
     number<&S::swipe_length_mm>("swipe_length_mm", 40.0, 600.0),
+    rule<&S::swipe_vertical>("swipe_vertical"),
     number<&S::swipe_dies_mmps>("swipe_dies_mmps", 50.0, 1000.0),
     number<&S::swipe_horizontal_deg>("swipe_horizontal_deg", 5.0, 44.0),
     number<&S::swipe_vertical_deg>("swipe_vertical_deg", 5.0, 44.0),

@@ -102,6 +102,9 @@ struct GestureSettings {
     double swipe_paddle_speed_mmps = 250.0;
     /// Length at which it commits. 40..600. TouchFree.
     double swipe_length_mm = 100.0;
+    /// Up and down, too. Hands that go to faces, cups and keyboards swipe up and down by any rule,
+    /// so that who needs the sides only switches it off.
+    bool swipe_vertical = true;
     /// The candidate dies below it, and none begins. 50..1000; above three sigma of the velocity of
     /// a hand with 3 mm of noise (65 mm/s at 15 fps).
     double swipe_dies_mmps = 200.0;

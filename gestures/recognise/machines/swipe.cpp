@@ -86,7 +86,8 @@ double cone_deg(const GestureSettings& s, Direction d) {
 
 Direction direction_of(const GestureSettings& s, const Vec3f& v) {
     for (const Direction d : {Direction::left, Direction::right, Direction::up, Direction::down}) {
-        if (v.dot(axis_of(d)) > 0.0F && off_axis_deg(v, d) <= cone_deg(s, d)) {
+        const bool asked = s.swipe_vertical || horizontal(d);
+        if (asked && v.dot(axis_of(d)) > 0.0F && off_axis_deg(v, d) <= cone_deg(s, d)) {
             return d;
         }
     }

@@ -281,6 +281,19 @@ TEST(Swipe, TheTipIsTheSecondVote) {
     EXPECT_TRUE(stage.explained("swipe", "the index tip stays behind"));
 }
 
+TEST(Swipe, UpAndDownMayBeSwitchedOff) {
+    const auto story_without = [](const Vec3f& way) {
+        GestureSettings settings;
+        settings.swipe_vertical = false;
+        Stage stage(settings);
+        stage.play(stroke(way, 400), 60);
+        return stage.story();
+    };
+    EXPECT_THAT(story_without(at(0, 250, 0)), IsEmpty());
+    EXPECT_THAT(story_without(at(0, -250, 0)), IsEmpty());
+    EXPECT_THAT(story_without(at(250, 0, 0)), ElementsAre("swipe_right"));
+}
+
 TEST(Swipe, IsOffWhenSwitchedOff) {
     GestureSettings settings;
     settings.swipe = false;
