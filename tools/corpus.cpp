@@ -223,7 +223,7 @@ class Plan {
         return groups_.size() - 1;
     }
     void add_job(std::size_t group, const GestureSettings& settings,
-                 std::function<Sequence()> make) {
+                 const std::function<Sequence()>& make) {
         jobs_.push_back({group, [settings, make] { return corpus::run(make(), settings); }, make});
     }
 

@@ -211,8 +211,7 @@ void HandCut::find_pixels(const CoarseScene& coarse, const PalmCandidate& palm, 
         const float* const z = grid_.z.data() + begin;
         std::uint8_t* const in = inside_.data() + begin;
         for (int x = 0; x < width; ++x) {
-            in[x] = (z[x] > 0.0F) & (z[x] > low[x]) & (z[x] <= high[x]) ? std::uint8_t{1}
-                                                                        : std::uint8_t{0};
+            in[x] = static_cast<std::uint8_t>((z[x] > 0.0F) & (z[x] > low[x]) & (z[x] <= high[x]));
         }
         for (int cell = 0; cell < cells.width(); ++cell) {
             if (row[cell].whole || row[cell].high_mm <= 0.0F) {

@@ -36,7 +36,7 @@ class CircleMachine : public Machine<CircleMachine, CircleState, CircleEvent> {
     friend Machine;
     using State = CircleState;
     using Event = CircleEvent;
-    enum Point : std::size_t { tip, palm, kPoints };
+    enum Point : std::size_t { tip, palm, count };
 
     static const char* name(State s);
     static const char* name(Event e);
@@ -52,7 +52,7 @@ class CircleMachine : public Machine<CircleMachine, CircleState, CircleEvent> {
     [[nodiscard]] ArcPath::Limits limits(const GestureSettings& s) const noexcept;
     void commit(const Context& c);
 
-    std::array<ArcPath, kPoints> paths_;
+    std::array<ArcPath, Point::count> paths_;
     Point point_ = palm;         ///< which of them goes round
     Arc arc_;                    ///< of it
     double turned_rad_ = 0.0;    ///< since its start, the way back taken off
