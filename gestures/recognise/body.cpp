@@ -15,7 +15,6 @@ namespace {
 constexpr float kAdultHandMm = 187.0F;
 constexpr float kLargeHandMm = 220.0F;
 constexpr float kPalmToElbowMm = 330.0F;
-constexpr float kRadiusOfLength = 0.23F;  // of the circle in the palm
 // A palm that is turned farther off shows too little of its width.
 constexpr float kFacing = 0.7F;
 // Of the mean: as long as it takes to forget a hand whose id another got; and from when on it is
@@ -52,7 +51,7 @@ void HandSize::add(const Hand& hand, Stamp now) noexcept {
         // by is the same for two hands.
         const float facing = -hand.palm_normal.dot(hand.palm_mm.normalized());
         if (facing >= kFacing) {
-            length_mm = hand.palm_radius_mm / (kRadiusOfLength * std::sqrt(facing));
+            length_mm = hand.palm_radius_mm / (kPalmRadiusOfLength * std::sqrt(facing));
         }
     }
     const double step_s = std::clamp(to_seconds(now - last_), 0.0, kLongestStepS);
@@ -68,19 +67,19 @@ float HandSize::length_mm() const noexcept {
     return seconds_ > kEnoughS ? static_cast<float>(mean_mm_) : 0.0F;
 }
 
-Limb limb_of(const Hand& hand, float length_mm) noexcept {
-    Limb limb;
-    limb.palm_mm = hand.palm_mm;
+Arm arm_of(const Hand& hand, float length_mm) noexcept {
+    Arm arm;
+    arm.palm_mm = hand.palm_mm;
     // Of joints it is the wrist's direction, which bends.
-    limb.forearm = hand.articulated ? Vec3f(Vec3f::Zero()) : hand.forearm;
-    limb.guess = hand.chirality;
-    limb.side = hand.chirality_confidence >= kSureOfSide ? hand.chirality : Chirality::unknown;
-    limb.length_mm = length_mm;
-    limb.bones = hand.articulated;
-    return limb;
+    arm.forearm = hand.articulated ? Vec3f(Vec3f::Zero()) : hand.forearm;
+    arm.guess = hand.chirality;
+    arm.side = hand.chirality_confidence >= kSureOfSide ? hand.chirality : Chirality::unknown;
+    arm.length_mm = length_mm;
+    arm.bones = hand.articulated;
+    return arm;
 }
 
-SameBody same_body(const GestureSettings& s, const Limb& a, const Limb& b, bool together) noexcept {
+SameBody same_body(const GestureSettings& s, const Arm& a, const Arm& b, bool together) noexcept {
     const bool sided = a.side != Chirality::unknown || b.side != Chirality::unknown;
     if (sided && a.side == b.side) {
         return SameBody::same_side;
@@ -124,7 +123,7 @@ SameBody same_body(const GestureSettings& s, const Limb& a, const Limb& b, bool 
     return alike && within && !crossed && !narrow ? SameBody::yes : SameBody::unsure;
 }
 
-bool same_build(const Limb& was, const Limb& is) noexcept {
+bool same_build(const Arm& was, const Arm& is) noexcept {
     const bool other_side =
         was.side != Chirality::unknown && is.guess != Chirality::unknown && was.side != is.guess;
     const bool other_size =
@@ -132,7 +131,7 @@ bool same_build(const Limb& was, const Limb& is) noexcept {
     return !other_side && !other_size;
 }
 
-bool same_hand(const GestureSettings& s, const Limb& was, const Limb& is) noexcept {
+bool same_hand(const GestureSettings& s, const Arm& was, const Arm& is) noexcept {
     const auto near = [&](const Vec3f& a, const Vec3f& b) {
         return static_cast<double>((a - b).norm()) <= s.engage_return_mm;
     };

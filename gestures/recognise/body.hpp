@@ -22,7 +22,7 @@ class HandSize {
 };
 
 /// A hand and its arm, as far as they tell whose they are.
-struct Limb {
+struct Arm {
     Vec3f palm_mm = Vec3f::Zero();
     Vec3f forearm = Vec3f::Zero();         ///< unit, toward the elbow; zero: not seen
     Chirality side = Chirality::unknown;   ///< only where the tracker is sure
@@ -30,7 +30,7 @@ struct Limb {
     float length_mm = 0.0F;                ///< of the hand; 0: not known
     bool bones = false;                    ///< and it is that of measured bones
 };
-[[nodiscard]] Limb limb_of(const Hand& hand, float length_mm) noexcept;
+[[nodiscard]] Arm arm_of(const Hand& hand, float length_mm) noexcept;
 
 /// Whether two hands are of one body.
 enum class SameBody {
@@ -41,15 +41,15 @@ enum class SameBody {
     yes,
 };
 /// @param together they count as one body's already: wide gestures do not part them
-[[nodiscard]] SameBody same_body(const GestureSettings& s, const Limb& a, const Limb& b,
+[[nodiscard]] SameBody same_body(const GestureSettings& s, const Arm& a, const Arm& b,
                                  bool together = false) noexcept;
 [[nodiscard]] constexpr bool is_possible(SameBody verdict) noexcept {
     return verdict != SameBody::no && verdict != SameBody::same_side;
 }
 
 /// Whether two sights can be of one hand by side and size, wherever it is.
-[[nodiscard]] bool same_build(const Limb& was, const Limb& is) noexcept;
+[[nodiscard]] bool same_build(const Arm& was, const Arm& is) noexcept;
 /// ... and by its place and its arm, a short while later.
-[[nodiscard]] bool same_hand(const GestureSettings& s, const Limb& was, const Limb& is) noexcept;
+[[nodiscard]] bool same_hand(const GestureSettings& s, const Arm& was, const Arm& is) noexcept;
 
 }  // namespace xtrack::recognise

@@ -78,18 +78,18 @@ void Acquaintance::weigh(const GestureSettings& s, SameBody verdict, bool settle
 double Company::note(const GestureSettings& s, std::span<const HandReport> hands, Stamp now) {
     for (const HandReport& r : hands) {
         Acquaintance& one = of(r.hand->id);
-        const Limb limb = limb_of(*r.hand, r.length_mm);
+        const Arm arm = arm_of(*r.hand, r.length_mm);
         if (one.hand_id == 0 || to_ms(now - one.seen) > remembered_ms(s)) {
             one = {};
             one.hand_id = r.hand->id;
             one.first_seen = now;
-            one.first = one.limb = limb;
+            one.first = one.arm = arm;
         }
         // What was known once is not forgotten while it is not seen.
-        const Limb was = one.limb;
-        one.limb = limb;
-        one.limb.side = limb.side != Chirality::unknown ? limb.side : was.side;
-        one.limb.length_mm = limb.length_mm > 0.0F ? limb.length_mm : was.length_mm;
+        const Arm was = one.arm;
+        one.arm = arm;
+        one.arm.side = arm.side != Chirality::unknown ? arm.side : was.side;
+        one.arm.length_mm = arm.length_mm > 0.0F ? arm.length_mm : was.length_mm;
         one.seen = now;
     }
     const double ms = std::clamp(to_ms(now - last_), 0.0, kLongestStepMs);
@@ -116,17 +116,17 @@ const Acquaintance* Company::before(const GestureSettings& s, const Acquaintance
     const Acquaintance* nearest = nullptr;
     float nearest_mm = 0.0F;
     // Where it was then, with what is known of it by now.
-    Limb then = one.limb;
+    Arm then = one.arm;
     then.palm_mm = one.first.palm_mm;
     then.forearm = one.first.forearm;
     for (const Acquaintance& gone : all_) {
         const bool may_be = gone.hand_id != 0 && gone.hand_id != one.hand_id &&
                             gone.seen < one.first_seen &&
                             to_ms(one.first_seen - gone.seen) <= remembered_ms(s);
-        if (!may_be || !same_hand(s, gone.limb, then)) {
+        if (!may_be || !same_hand(s, gone.arm, then)) {
             continue;
         }
-        const float off_mm = (then.palm_mm - gone.limb.palm_mm).norm();
+        const float off_mm = (then.palm_mm - gone.arm.palm_mm).norm();
         if (nearest == nullptr || off_mm < nearest_mm) {
             nearest = &gone;
             nearest_mm = off_mm;

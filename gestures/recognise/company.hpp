@@ -28,8 +28,8 @@ struct HandReport {
 /// One hand, what is known of it, and whether it is taken for the owner's other one.
 struct Acquaintance {
     int hand_id = 0;  ///< 0: free
-    Limb limb;
-    Limb first;  ///< when it was first seen
+    Arm arm;
+    Arm first;  ///< when it was first seen
     Stamp first_seen;
     Stamp seen;
 

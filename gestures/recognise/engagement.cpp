@@ -71,7 +71,7 @@ const HandReport* Engagement::returned(const Context& c, std::span<const HandRep
     const auto is_owner = [&](const HandReport& r) {
         const Acquaintance& one = company_.of(r.hand->id);
         const Acquaintance* before = company_.before(s, one);
-        return in_zone(s, one.limb.palm_mm, 0.0) &&
+        return in_zone(s, one.arm.palm_mm, 0.0) &&
                (r.hand->id == owner_ || (before != nullptr && before->hand_id == owner_));
     };
     const auto back = std::ranges::find_if(hands, is_owner);
@@ -125,7 +125,7 @@ const HandReport* Engagement::summons(const Context& c, std::span<const HandRepo
 
 const HandReport* Engagement::mixed_up(const Context& c, std::span<const HandReport> hands,
                                        const HandReport& owner, double ms) {
-    const Limb& now = company_.of(owner_).limb;
+    const Arm& now = company_.of(owner_).arm;
     // Two ids change places from one frame to the next, or the hand that was the owner's is a new
     // one.
     const auto in_its_place = [&](const HandReport& r) {
@@ -145,18 +145,18 @@ const HandReport* Engagement::mixed_up(const Context& c, std::span<const HandRep
             continue;
         }
         Acquaintance& one = company_.of(r.hand->id);
-        if ((one.limb.palm_mm - now.palm_mm).norm() <= kMeetMm) {
+        if ((one.arm.palm_mm - now.palm_mm).norm() <= kMeetMm) {
             one.met = c.sensor;
         }
         if (one.met != Stamp{} && to_ms(c.sensor - one.met) <= kMixedUpMs) {
             met = true;
-            likely = same_build(owner_limb_, one.limb) ? &r : likely;
+            likely = same_build(owner_arm_, one.arm) ? &r : likely;
         }
     }
     if (!met) {
-        owner_limb_ = now;
+        owner_arm_ = now;
     }
-    other_ms_ = likely != nullptr && !same_build(owner_limb_, now) ? other_ms_ + ms : 0.0;
+    other_ms_ = likely != nullptr && !same_build(owner_arm_, now) ? other_ms_ + ms : 0.0;
     return other_ms_ >= c.settings.engage_ms ? likely : nullptr;
 }
 
@@ -166,10 +166,10 @@ void Engagement::hand_over(const Context& c, const HandReport& to) {
     // What is known of each goes with the hand; where they are has been noted under the new ids.
     other.trade_trust(owner);
     other.met = owner.met = Stamp{};
-    other.limb.side = Chirality::unknown;
-    other.limb.length_mm = 0.0F;
-    owner.limb.side = owner_limb_.side;
-    owner.limb.length_mm = owner_limb_.length_mm;
+    other.arm.side = Chirality::unknown;
+    other.arm.length_mm = 0.0F;
+    owner.arm.side = owner_arm_.side;
+    owner.arm.length_mm = owner_arm_.length_mm;
     second_ = second_ == to.hand->id ? owner_ : second_;
     owner_ = to.hand->id;
     other_ms_ = 0.0;
@@ -204,7 +204,7 @@ void Engagement::watch_owner(const Context& c, const HandReport* owner) {
 /// Who is the owner's second hand; only while the owner is seen.
 void Engagement::watch_others(const Context& c, std::span<const HandReport> hands, double ms) {
     const GestureSettings& s = c.settings;
-    const Limb owner = company_.of(owner_).limb;
+    const Arm owner = company_.of(owner_).arm;
     for (const HandReport& r : hands) {
         const int id = r.hand->id;
         Acquaintance& one = company_.of(id);
@@ -223,7 +223,7 @@ void Engagement::watch_others(const Context& c, std::span<const HandReport> hand
         }
         const bool inside = in_zone(s, r.hand->palm_mm, s.zone_margin_mm);
         one.outside_ms = inside ? 0.0 : one.outside_ms + ms;
-        const SameBody verdict = same_body(s, owner, one.limb, in);
+        const SameBody verdict = same_body(s, owner, one.arm, in);
         if (inside || !is_possible(verdict)) {
             one.weigh(s, verdict, r.present && inside && is_slow(c, r), in, ms);
         }
@@ -301,7 +301,7 @@ std::optional<EngageState> Engagement::idle(const Context& c, Event event) {
         case Event::waiting: return State::idle;
         case Event::summoned:
             owner_ = owner_hand_.id;
-            owner_limb_ = company_.of(owner_).limb;
+            owner_arm_ = company_.of(owner_).arm;
             second_ = 0;
             other_ms_ = 0.0;
             kept_ = false;

@@ -58,7 +58,7 @@ class Engagement : public Machine<Engagement, EngageState, EngageEvent> {
     int owner_ = 0;
     int second_ = 0;
     Hand owner_hand_;
-    Limb owner_limb_;        ///< as it was when no other hand was near
+    Arm owner_arm_;          ///< as it was when no other hand was near
     double other_ms_ = 0.0;  ///< so long the owner's id has looked like another hand
     Stamp onset_;
     Stamp inside_at_;  ///< the owner's last moment in the zone

@@ -208,9 +208,7 @@ void Ensemble::act(HandSlot& slot, Stamp now) {
 TwoGrips Ensemble::two_grips() {
     std::array<HandSlot*, 2> slots{};
     std::size_t count = 0;
-    const auto limb = [](const HandSlot& slot) {
-        return limb_of(slot.hand, slot.size.length_mm());
-    };
+    const auto arm = [](const HandSlot& slot) { return arm_of(slot.hand, slot.size.length_mm()); };
     for (HandSlot& slot : slots_) {
         if (!slot.used || count == slots.size()) {
             continue;
@@ -218,7 +216,7 @@ TwoGrips Ensemble::two_grips() {
         const bool paired = slot.hand.id == pair_[0] || slot.hand.id == pair_[1];
         const bool free = pair_[0] == 0 && slot.fingers().held && gate_of(slot) == Gate::open;
         const bool fits =
-            count == 0 || is_possible(same_body(settings_, limb(*slots[0]), limb(slot)));
+            count == 0 || is_possible(same_body(settings_, arm(*slots[0]), arm(slot)));
         if (paired || (free && fits)) {
             slots[count++] = &slot;
         }

@@ -8,6 +8,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include "gestures/segment/ramp.hpp"
+
 namespace xtrack::segment {
 
 namespace {
@@ -61,10 +63,6 @@ constexpr float kArmWidthMaxMm = 110.0F;
 /// How far behind the wrist its width is measured, mm, and how far to either side, in palm radii.
 constexpr float kArmLengthMm = 60.0F;
 constexpr float kArmBesideRadii = 2.0F;
-
-float ramp(float v, float from, float to) {
-    return std::clamp((v - from) / (to - from), 0.0F, 1.0F);
-}
 
 /// What the surface round a candidate adds up to.
 struct Shape {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "gestures/segment/palm_score.hpp"
+#include "gestures/segment/ramp.hpp"
 
 namespace xtrack::segment {
 
@@ -44,10 +45,6 @@ constexpr float kWristDefaultRadii = 1.5F;
 constexpr int kWristBins = 9;
 /// An expected palm explains a candidate this near, mm.
 constexpr float kPriorReachMm = 90.0F;
-
-float ramp(float v, float from, float to) {
-    return std::clamp((v - from) / (to - from), 0.0F, 1.0F);
-}
 
 }  // namespace
 

@@ -65,5 +65,7 @@ Flexion flexion_of(const Hand& hand, Finger finger) noexcept;
 
 /// Wrist to middle fingertip of the straight hand, mm, from the middle finger's bones; 0 = unknown.
 float hand_length_mm(const Hand& hand) noexcept;
+/// The widest circle in a palm that faces the camera, as a share of that length; measured.
+inline constexpr float kPalmRadiusOfLength = 0.23F;
 
 }  // namespace xtrack

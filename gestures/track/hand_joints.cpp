@@ -5,14 +5,14 @@
 
 #include <Eigen/Geometry>
 
+#include "gestures/track/hand_from_joints.hpp"
+
 namespace xtrack::track {
 
 namespace {
 
-// Of the hands that were measured, wrist to the middle finger's tip; the circle in the palm has
-// 0.23 of it.
+// Of the hands that were measured, wrist to the middle finger's tip.
 constexpr float kMeasuredHandMm = 187.0F;
-constexpr float kRadiusOfLength = 0.23F;
 // Skin to the middle of the palm, the wrist, a finger.
 constexpr float kPalmHalfMm = 13.0F;
 constexpr float kFingerHalfMm = 7.5F;
@@ -98,7 +98,7 @@ void infer_joints(const HandRegion& region, int thumb_side, Hand& hand) {
         return;
     }
     Axes axes;
-    axes.scale = region.palm_radius_mm / (kRadiusOfLength * kMeasuredHandMm);
+    axes.scale = region.palm_radius_mm / (kPalmRadiusOfLength * kMeasuredHandMm);
     axes.in = -hand.palm_normal;
     axes.middle_mm = region.palm_mm + axes.scale * kPalmHalfMm * axes.in;
     hand.joint(Joint::palm) = {axes.middle_mm, true};

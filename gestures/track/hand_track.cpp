@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gestures/segment/ramp.hpp"
 #include "gestures/track/hand_joints.hpp"
 
 namespace xtrack::track {
@@ -49,10 +50,6 @@ constexpr float kArmSmoothS = 0.1F;
 constexpr float kConfidenceSmoothS = 0.1F;
 
 float logistic(float x) { return 1.0F / (1.0F + std::exp(-x)); }
-
-float ramp(float v, float from, float to) {
-    return std::clamp((v - from) / (to - from), 0.0F, 1.0F);
-}
 
 }  // namespace
 

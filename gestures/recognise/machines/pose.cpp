@@ -13,6 +13,8 @@
 #include <algorithm>
 #include <array>
 
+#include "gestures/segment/ramp.hpp"
+
 namespace xtrack::recognise {
 
 namespace {
@@ -33,11 +35,6 @@ constexpr float kThumbOut = 0.30F;
 constexpr float kThumbSlants = 0.5F;
 constexpr float kThumbUpright = 0.85F;
 constexpr std::array kFingers{Finger::index, Finger::middle, Finger::ring, Finger::little};
-
-/// 0 at `none`, 1 at `all`, and between them in proportion.
-float ramp(float value, float none, float all) {
-    return std::clamp((value - none) / (all - none), 0.0F, 1.0F);
-}
 
 /// -1 = unknown, as of a finger's extension.
 float straight(const MotionSample& hand, Finger finger) {

@@ -9,8 +9,8 @@
 namespace xtrack::test {
 namespace {
 
+using recognise::Arm;
 using recognise::HandSize;
-using recognise::Limb;
 using recognise::same_body;
 using recognise::same_build;
 using recognise::same_hand;
@@ -19,8 +19,8 @@ using recognise::SameBody;
 const GestureSettings kSettings;
 
 /// An adult's arm, whose elbow hangs below and behind the palm.
-Limb limb(Chirality side, float x, float y = 0.0F, float z = 500.0F, float length_mm = 187.0F) {
-    Limb l;
+Arm arm(Chirality side, float x, float y = 0.0F, float z = 500.0F, float length_mm = 187.0F) {
+    Arm l;
     l.palm_mm = {x, y, z};
     l.side = l.guess = side;
     l.length_mm = length_mm;
@@ -28,14 +28,14 @@ Limb limb(Chirality side, float x, float y = 0.0F, float z = 500.0F, float lengt
     return l;
 }
 
-Limb left(float x, float y = 0.0F, float z = 500.0F, float length_mm = 187.0F) {
-    return limb(Chirality::left, x, y, z, length_mm);
+Arm left(float x, float y = 0.0F, float z = 500.0F, float length_mm = 187.0F) {
+    return arm(Chirality::left, x, y, z, length_mm);
 }
-Limb right(float x, float y = 0.0F, float z = 500.0F, float length_mm = 187.0F) {
-    return limb(Chirality::right, x, y, z, length_mm);
+Arm right(float x, float y = 0.0F, float z = 500.0F, float length_mm = 187.0F) {
+    return arm(Chirality::right, x, y, z, length_mm);
 }
 
-Limb without_arm(Limb l) {
+Arm without_arm(Arm l) {
     l.forearm.setZero();
     return l;
 }
@@ -82,34 +82,34 @@ TEST(SameBody, HandsOfOtherSizesAreNot) {
     EXPECT_EQ(same_body(kSettings, left(-80), right(80, 0, 500, 155)), SameBody::unsure);
     EXPECT_EQ(same_body(kSettings, left(-80), right(80, 0, 500, 140)), SameBody::no);
     // Bones are measured better than palms.
-    Limb a = left(-80);
-    Limb b = right(80, 0, 500, 170);
+    Arm a = left(-80);
+    Arm b = right(80, 0, 500, 170);
     a.bones = b.bones = true;
     EXPECT_EQ(same_body(kSettings, a, b), SameBody::unsure);
 }
 
 TEST(SameBody, WithoutArmsPalmsTellLess) {
-    const Limb one = without_arm(left(-80));
+    const Arm one = without_arm(left(-80));
     EXPECT_EQ(same_body(kSettings, one, without_arm(right(80))), SameBody::yes);
     EXPECT_EQ(same_body(kSettings, one, without_arm(right(80, 220))), SameBody::unsure);
     EXPECT_EQ(same_body(kSettings, one, without_arm(right(80, 0, 900))), SameBody::far);
-    Limb unknown = without_arm(right(80));
+    Arm unknown = without_arm(right(80));
     unknown.side = Chirality::unknown;
     EXPECT_EQ(same_body(kSettings, one, unknown), SameBody::unsure);
 }
 
 TEST(SameHand, IsOfOneSideOneSizeAndOnePlace) {
-    const Limb was = right(80);
+    const Arm was = right(80);
     EXPECT_TRUE(same_hand(kSettings, was, right(250)));
     EXPECT_FALSE(same_hand(kSettings, was, right(420)));
     EXPECT_FALSE(same_hand(kSettings, was, left(80)));
     EXPECT_FALSE(same_hand(kSettings, was, right(80, 0, 500, 140)));
-    Limb guessed = right(80);
+    Arm guessed = right(80);
     guessed.side = Chirality::unknown;
     guessed.guess = Chirality::left;
     EXPECT_FALSE(same_build(was, guessed));
     // From above and behind: the palm is near, the elbow is not.
-    Limb other_arm = right(80);
+    Arm other_arm = right(80);
     other_arm.forearm = Vec3f{0.0F, 0.45F, 0.9F}.normalized();
     EXPECT_FALSE(same_hand(kSettings, was, other_arm));
 }
