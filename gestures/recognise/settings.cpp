@@ -349,7 +349,16 @@ Result<void> set_field(GestureSettings& settings, std::string_view name, std::st
     const auto* field =
         std::ranges::find_if(kFields, [&](const GestureField& one) { return name == one.name; });
     if (field == kFields.end()) {
-        return refuse(base::quoted(name) + " is none of them");
+        // Those that begin alike, so that a slip of the pen is seen.
+        constexpr std::size_t kAlike = 3;
+        std::string alike;
+        for (const GestureField& one : kFields) {
+            if (name.size() >= kAlike &&
+                std::string_view(one.name).starts_with(name.substr(0, kAlike))) {
+                alike += std::string(alike.empty() ? "; there is " : ", ") + one.name;
+            }
+        }
+        return refuse(base::quoted(name) + " is none of them" + alike);
     }
     const std::optional<double> value = value_of(*field, text);
     if (!value || !allowed(*field, *value)) {

@@ -52,5 +52,17 @@ TEST(Settings, RelationsAreChecked) {
     EXPECT_FALSE(validate(slow).ok());
 }
 
+TEST(Settings, ANameThatIsNoneOfThemGetsThoseThatBeginAlike) {
+    GestureSettings s;
+    const auto slip = set_field(s, "pull_lenght_mm", "150");
+    ASSERT_FALSE(slip.ok());
+    EXPECT_EQ(slip.error().code, ErrorCode::invalid_argument);
+    EXPECT_THAT(slip.error().message,
+                HasSubstr("'pull_lenght_mm' is none of them; there is pull, pull_length_mm"));
+    const auto nothing = set_field(s, "xq", "1");
+    ASSERT_FALSE(nothing.ok());
+    EXPECT_THAT(nothing.error().message, ::testing::EndsWith("'xq' is none of them"));
+}
+
 }  // namespace
 }  // namespace xtrack::test
