@@ -109,6 +109,7 @@ constexpr std::array kFields{
     number<&S::swipe_horizontal_deg>("swipe_horizontal_deg", 5.0, 44.0),
     number<&S::swipe_vertical_deg>("swipe_vertical_deg", 5.0, 44.0),
     number<&S::swipe_depth_deg>("swipe_depth_deg", 10.0, 60.0),
+    number<&S::swipe_body_deg>("swipe_body_deg", 10.0, 60.0),
     number<&S::swipe_sideways_mm>("swipe_sideways_mm", 5.0, 200.0),
     number<&S::swipe_sideways_share>("swipe_sideways_share", 0.0, 1.0),
     number<&S::swipe_bend_deg>("swipe_bend_deg", 10.0, 180.0),

@@ -114,6 +114,8 @@ struct GestureSettings {
     double swipe_vertical_deg = 20.0;
     /// Out of the x-y plane; a push is steeper. 10..60.
     double swipe_depth_deg = 45.0;
+    /// Up and away from the screen, or down and toward it: to the face and from it. 10..60.
+    double swipe_body_deg = 25.0;
     /// Sideways motion allowed: this, and a share of the length. 5..200; 0..1.
     double swipe_sideways_mm = 30.0;
     double swipe_sideways_share = 0.2;

@@ -319,6 +319,14 @@ Refusal SwipeMachine::objection(const Context& c, bool stops) const {
     if (out_of_plane_deg(moved) > s.swipe_depth_deg) {
         return {"toward or away from the screen", out_of_plane_deg(moved), s.swipe_depth_deg};
     }
+    if (!horizontal(stroke_.direction)) {
+        // Faces are above and behind the place where hands gesture.
+        const double to_body_deg =
+            degrees(std::atan2(static_cast<double>(moved.z() * axis.y()), stroke_.length_mm));
+        if (to_body_deg > s.swipe_body_deg) {
+            return {"to or from the body", to_body_deg, s.swipe_body_deg};
+        }
+    }
     if (now.index_tip_known && stroke_.tip_known) {
         const double tip_mm = static_cast<double>((now.index_tip_mm - stroke_.tip_mm).dot(axis));
         if (tip_mm < s.swipe_tip_share * stroke_.length_mm) {

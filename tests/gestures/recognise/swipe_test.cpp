@@ -108,6 +108,17 @@ TEST(Swipe, TowardTheScreenIsNone) {
                 ::testing::Not(::testing::Contains("swipe_left")));
 }
 
+TEST(Swipe, ToTheFaceAndFromItIsNone) {
+    // 31 degrees; a plain stroke by its length, its speed and its angle out of the plane (45).
+    EXPECT_THAT(story_of(stroke(at(0, 250, 150), 400)), IsEmpty());
+    EXPECT_THAT(story_of(stroke(at(0, -250, -150), 400)), IsEmpty());
+    // The other two ways do not lead to a face, nor does this much of an arc about an elbow.
+    EXPECT_THAT(story_of(stroke(at(0, 250, -150), 400)), ElementsAre("swipe_up"));
+    EXPECT_THAT(story_of(stroke(at(0, -250, 150), 400)), ElementsAre("swipe_down"));
+    EXPECT_THAT(story_of(stroke(at(0, 250, 90), 400)), ElementsAre("swipe_up"));
+    EXPECT_THAT(story_of(stroke(at(-250, 0, 150), 400)), ElementsAre("swipe_left"));
+}
+
 TEST(Swipe, TheWayBackIsNoSwipe) {
     const Actor actor{{{0, at(150, 0)},
                        {800, at(150, 0)},
