@@ -100,6 +100,7 @@ MotionSample sample_of(const Hand& seen, Stamp stamp, Duration span) noexcept {
     // Joints alone say where the palm points: a depth camera sees one side, and calls it the
     // normal.
     s.facing = palm_facing(hand);
+    s.side = hand.palm_normal;
     s.facing_signed = hand.chirality != Chirality::unknown;
     s.from_joints = seen.articulated;
     const float span_mm = s.from_joints || hand.palm_radius_mm <= 0.0F

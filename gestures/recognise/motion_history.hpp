@@ -27,6 +27,7 @@ struct MotionSample {
     Vec3f index_tip_mm = Vec3f::Zero();
     bool index_tip_known = false;
     Vec3f facing = Vec3f::Zero();  ///< unit, out of the palm; zero where no joints say it
+    Vec3f side = Vec3f::Zero();    ///< unit, out of the side that is seen, palm or back
     bool facing_signed = false;    ///< false: the chirality is unknown, so either sign may be true
     float aperture_mm = -1.0F;     ///< thumb tip to index tip; -1 = unknown
     float hand_length_mm = 0.0F;   ///< 0 = unknown

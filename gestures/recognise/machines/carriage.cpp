@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "gestures/recognise/machines/angles.hpp"
 
 namespace xtrack::recognise {
 
@@ -54,7 +55,7 @@ double bend_of(const MotionHistory& history, std::size_t samples) {
     // A segment of a circle: two thirds of chord times height, and height over half the chord is
     // the tangent of a quarter of the angle.
     const double height_mm = 1.5 * std::abs(area) / chord_mm;
-    return 4.0 * std::atan(2.0 * height_mm / chord_mm) * 180.0 / std::numbers::pi;
+    return degrees(4.0 * std::atan(2.0 * height_mm / chord_mm));
 }
 
 }  // namespace
@@ -87,6 +88,7 @@ Carriage carriage(const MotionHistory& history, std::size_t samples, const Vec3f
         const MotionSample& sample = history.at(i);
         facing += sample.facing;
         held.distal += sample.distal;
+        held.side += sample.side;
         grab.add(sample.grab);
     }
     held.facing_known = facing.norm() > 0.0F;
@@ -95,6 +97,9 @@ Carriage carriage(const MotionHistory& history, std::size_t samples, const Vec3f
     }
     if (!held.distal.isZero()) {
         held.distal.normalize();
+    }
+    if (!held.side.isZero()) {
+        held.side.normalize();
     }
     held.leads = static_cast<double>(facing.dot(along));
     held.shown = static_cast<double>(-facing.z());

@@ -20,6 +20,8 @@ struct Extensions {
 struct Carriage {
     /// Unit, toward the fingertips; zero = not known.
     Vec3f distal = Vec3f::Zero();
+    /// Unit, out of the side that is seen; zero = not known.
+    Vec3f side = Vec3f::Zero();
     bool facing_known = false;
     /// Of the palm's direction: along the stroke, and toward the screen. -1..1; where the side of
     /// the palm is not known, 0..1. @{

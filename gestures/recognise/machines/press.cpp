@@ -18,6 +18,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "gestures/recognise/machines/angles.hpp"
+
 namespace xtrack::recognise {
 
 namespace {
@@ -103,7 +105,7 @@ void PressMachine::push_on(const Context& c) {
     if (toward_mm < 0.0) {
         force_ += toward_mm / s.press_slow_way_mm;
     } else if (toward_mmps >= c.signal.still_mmps(s.press_slow_mmps, window)) {
-        const double off_deg = std::atan2(aside_mmps, toward_mmps) * 180.0 / std::numbers::pi;
+        const double off_deg = degrees(std::atan2(aside_mmps, toward_mmps));
         const double cone_deg = s.drag ? s.press_cone_deg : s.press_cone_without_drag_deg;
         if (off_deg <= cone_deg) {
             const double fast = std::clamp(

@@ -12,7 +12,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "gestures/recognise/machines/angles.hpp"
 
 namespace xtrack::recognise {
 
@@ -27,15 +28,6 @@ constexpr double kWindUpShare = 1.2;
 
 Vec3f axis_of(GestureType type) {
     return {0.0F, 0.0F, type == GestureType::push ? -1.0F : 1.0F};  // z is from the screen
-}
-
-double angle_deg(const Vec3f& a, const Vec3f& b) {
-    const double norms = static_cast<double>(a.norm()) * static_cast<double>(b.norm());
-    if (norms <= 0.0) {
-        return 0.0;
-    }
-    const double cosine = std::clamp(static_cast<double>(a.dot(b)) / norms, -1.0, 1.0);
-    return std::acos(cosine) * 180.0 / std::numbers::pi;
 }
 
 }  // namespace

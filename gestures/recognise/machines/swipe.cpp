@@ -12,9 +12,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "gestures/recognise/machines/angles.hpp"
 #include "gestures/recognise/machines/carriage.hpp"
+#include "gestures/recognise/machines/stroke_manner.hpp"
 
 namespace xtrack::recognise {
 
@@ -27,11 +28,13 @@ constexpr float kLookBackShare = 0.5F;  // of swipe_dies_mmps: still part of the
 // A stroke that is this much faster than the one it undoes was the swipe, the first its wind-up.
 constexpr float kWindUpShare = 1.2F;
 constexpr Duration kSeenBefore = std::chrono::milliseconds{300};
-constexpr double kShownFacing = 0.7;  // palm toward the screen, 45 degrees
 // A palm that jumps, or two hands whose tracker exchanges their ids. Swipes at a mean of 1.5 m/s
 // have 1.9 m/s in their first 100 mm.
 constexpr double kFastestMmps = 4000.0;
 constexpr float kConfidenceFloor = 0.5F;
+// Fingers this much up: a hand that is held up, 37 degrees. On tables and keyboards they lie.
+constexpr float kHeldUp = 0.8F;
+constexpr double kReadySettlesMs = 3000.0;
 // A hand that turns by more has ended its way in and begun something else.
 constexpr double kTurnedDeg = 60.0;
 // Along the forearm to the wrist: within 45 degrees.
@@ -39,8 +42,6 @@ constexpr float kTowardWrist = -0.7F;
 // A stroke that is over its peak by so much comes to rest in view. Peaks of a line fit over 100 ms
 // scatter by 5 % with 3 mm of noise.
 constexpr float kSlowsShare = 0.5F;
-
-double degrees(double rad) { return rad * 180.0 / std::numbers::pi; }
 
 Vec3f axis_of(Direction d) {
     switch (d) {
@@ -74,12 +75,6 @@ double out_of_plane_deg(const Vec3f& v) {
                               std::hypot(static_cast<double>(v.x()), static_cast<double>(v.y()))));
 }
 
-double angle_deg(const Vec3f& a, const Vec3f& b) {
-    const double norms = static_cast<double>(a.norm()) * static_cast<double>(b.norm());
-    const double cosine = norms > 0.0 ? static_cast<double>(a.dot(b)) / norms : 1.0;
-    return degrees(std::acos(std::clamp(cosine, -1.0, 1.0)));
-}
-
 double cone_deg(const GestureSettings& s, Direction d) {
     return horizontal(d) ? s.swipe_horizontal_deg : s.swipe_vertical_deg;
 }
@@ -92,58 +87,6 @@ Direction direction_of(const GestureSettings& s, const Vec3f& v) {
         }
     }
     return Direction::none;
-}
-
-/// How a hand is held in a stroke, the table of docs/gestures/swipe.md.
-enum class Manner {
-    paddle,   ///< the palm leads
-    plain,    ///< the palm is shown, or nothing is known
-    guarded,  ///< the back leads, or up or down held up flat: as hands come back and are raised,
-              ///< too
-    carried,
-    pointing,
-};
-
-Manner manner_of(const GestureSettings& s, const Carriage& held, bool from_joints, bool level) {
-    const double outer = held.extension.outer;
-    if (from_joints && outer >= 0.0 && outer < s.swipe_pointing_extension) {
-        return Manner::pointing;
-    }
-    // Sideways a palm leads or shows itself to the screen on purpose; up and down it does so
-    // whenever a hand is raised or dropped, unless it is held up flat.
-    const bool shows = !held.facing_known || held.shown >= kShownFacing;
-    if (!level) {
-        return shows && held.is_upright() ? Manner::guarded : Manner::carried;
-    }
-    if (held.leads >= s.swipe_facing) {
-        return Manner::paddle;
-    }
-    if (held.leads <= -s.swipe_facing) {
-        return Manner::guarded;
-    }
-    return shows ? Manner::plain : Manner::carried;
-}
-
-struct Least {
-    double mm = 0.0;
-    double mmps = 0.0;
-    const char* shorter = "short";
-    const char* slower = "slow";
-};
-
-Least least_of(const GestureSettings& s, Manner manner) {
-    switch (manner) {
-        case Manner::paddle: return {s.swipe_length_mm, s.swipe_paddle_speed_mmps};
-        case Manner::plain: return {s.swipe_length_mm, s.swipe_speed_mmps};
-        case Manner::guarded: return {s.swipe_back_length_mm, s.swipe_back_speed_mmps};
-        case Manner::carried:
-            return {s.swipe_carried_length_mm, s.swipe_carried_speed_mmps,
-                    "short for a carried hand", "slow for a carried hand"};
-        case Manner::pointing:
-            return {s.swipe_carried_length_mm, s.swipe_carried_speed_mmps,
-                    "short for a pointing hand", "slow for a pointing hand"};
-    }
-    return {};
 }
 
 }  // namespace
@@ -172,6 +115,7 @@ const char* SwipeMachine::name(Event e) {
 void SwipeMachine::update(const Context& c) {
     const Vec3f velocity = c.history.velocity(from_ms(c.settings.velocity_window_ms));
     note_rest(c, velocity);
+    note_ready(c, velocity);
     if (c.gate != Gate::open) {
         coming_ = true;
         coming_mmps_ = Vec3f::Zero();
@@ -312,6 +256,16 @@ Refusal SwipeMachine::objection(const Context& c, bool stops) const {
     const MotionSample& now = c.history.newest();
     const Vec3f axis = axis_of(stroke_.direction);
     const Vec3f moved = now.palm_mm - stroke_.palm_mm;
+    // How far from the place where the hand is held up, against the stroke: its preparation.
+    const auto below_mm = static_cast<double>(ready_mm_.y() - stroke_.palm_mm.y());
+    const double prepared_mm = below_mm * static_cast<double>(axis.y());
+    if (ready_known_ && below_mm > s.swipe_below_mm) {
+        return {"begins below where the hand is held up", below_mm, s.swipe_below_mm};
+    }
+    if (s.swipe_prepared && !horizontal(stroke_.direction) && ready_known_ &&
+        prepared_mm < s.swipe_prepared_mm && stroke_.speed_mmps < s.swipe_flick_mmps) {
+        return {"begins where the hand is held up", prepared_mm, s.swipe_prepared_mm};
+    }
     const double off_deg = off_axis_deg(moved, stroke_.direction);
     if (off_deg > cone_deg(s, stroke_.direction)) {
         return {"slanting", off_deg, cone_deg(s, stroke_.direction)};
@@ -441,6 +395,22 @@ void SwipeMachine::note_rest(const Context& c, const Vec3f& velocity) {
         c.signal.still_mmps(c.settings.swipe_rest_mmps, from_ms(c.settings.velocity_window_ms))) {
         rested_since_ = true;
     }
+}
+
+/// Where the hand was last held up and did not stroke.
+void SwipeMachine::note_ready(const Context& c, const Vec3f& velocity) {
+    const MotionSample& now = c.history.newest();
+    if (now.distal.y() < kHeldUp ||
+        static_cast<double>(velocity.norm()) >= c.settings.swipe_dies_mmps) {
+        return;
+    }
+    if (!ready_known_) {
+        ready_known_ = true;
+        ready_mm_ = now.palm_mm;
+    }
+    const double ms = c.history.size() > 1 ? to_ms(now.stamp - c.history.at(1).stamp) : 0.0;
+    ready_mm_ +=
+        static_cast<float>(1.0 - std::exp(-ms / kReadySettlesMs)) * (now.palm_mm - ready_mm_);
 }
 
 /// A motion that was under way when the gate opened is the hand's way in, until it rests or turns.

@@ -50,6 +50,7 @@ class SwipeMachine {
     void begin_stroke(const Context& c, Direction direction);
     void commit(const Context& c);
     void note_rest(const Context& c, const Vec3f& velocity);
+    void note_ready(const Context& c, const Vec3f& velocity);
     [[nodiscard]] bool comes_in(const Context& c, const Vec3f& velocity);
     [[nodiscard]] bool withdraws(const Vec3f& distal) const;
 
@@ -61,6 +62,8 @@ class SwipeMachine {
     bool rested_since_ = true;  ///< slower than swipe_rest_mmps since the last commit
     Stroke last_;               ///< the one that committed, its peak as it went on; none at first
     Stamp committed_at_;
+    bool ready_known_ = false;
+    Vec3f ready_mm_ = Vec3f::Zero();     ///< where it is held up; strokes far below begin elsewhere
     bool coming_ = false;                ///< the motion began while the hand was gated
     Vec3f coming_mmps_ = Vec3f::Zero();  ///< how it moved when the gate opened; zero before
     Stamp drop_until_;  ///< samples before it are not looked at: the hand was gated

@@ -305,6 +305,79 @@ TEST(Swipe, UpAndDownMayBeSwitchedOff) {
     EXPECT_THAT(story_without(at(250, 0, 0)), ElementsAre("swipe_right"));
 }
 
+/// Held up at (0, 0) with the fingers up, then slowly to `from`, then a stroke by `way`.
+Actor stroke_from(const Vec3f& from, const Vec3f& way, double ms) {
+    const Vec3f to = from + way;
+    return {{{0, at(0, 0)},
+             {2000, at(0, 0)},
+             {5000, from},
+             {5300, from},
+             {5300 + ms, to},
+             {6300 + ms, to}},
+            Held::palm_screen};
+}
+
+TEST(Swipe, FromFarBelowWhereTheHandIsHeldUpIsNone) {
+    // Palm down on the way and on the table, as hands lie there.
+    Actor actor = stroke_from(at(0, -260), at(0, 200, 0), 350);
+    actor.change = [](double ms, Hand& hand) {
+        if (ms > 2000.0 && ms < 5300.0) {
+            hand.joints = {};
+            add_joints(hand, at(0, 0, -1), at(0, -1, 0), false);
+            complete_from_joints(hand);
+        }
+    };
+    Stage stage;
+    stage.play(actor, 60);
+    EXPECT_THAT(stage.story(), IsEmpty());
+    EXPECT_TRUE(stage.explained("swipe", "begins below where the hand is held up"));
+    GestureSettings anywhere;
+    anywhere.swipe_below_mm = 1000.0;
+    Stage permissive(anywhere);
+    permissive.play(actor, 60);
+    EXPECT_THAT(permissive.story(), ElementsAre("swipe_up"));
+    // A wind-up of 120 mm is none of that.
+    EXPECT_THAT(story_of(stroke_from(at(0, -120), at(0, 240, 0), 400)), ElementsAre("swipe_up"));
+}
+
+TEST(Swipe, UpAndDownMayBeAskedForAPreparation) {
+    GestureSettings settings;
+    settings.swipe_prepared = true;
+    const auto story_if_asked = [&](const Vec3f& from, const Vec3f& way, double ms) {
+        Stage stage(settings);
+        stage.play(stroke_from(from, way, ms), 60);
+        return stage.story();
+    };
+    EXPECT_THAT(story_of(stroke_from(at(0, 0), at(0, -200, 0), 400)), ElementsAre("swipe_down"));
+    EXPECT_THAT(story_if_asked(at(0, 0), at(0, -200, 0), 400), IsEmpty());
+    EXPECT_THAT(story_if_asked(at(0, 0), at(0, 200, 0), 400), IsEmpty());
+    EXPECT_THAT(story_if_asked(at(0, 0), at(0, -200, 0), 200),
+                ElementsAre("swipe_down"));  // a flick
+    EXPECT_THAT(story_if_asked(at(0, 80), at(0, -200, 0), 400), ElementsAre("swipe_down"));
+    EXPECT_THAT(story_if_asked(at(0, -80), at(0, 200, 0), 400), ElementsAre("swipe_up"));
+    EXPECT_THAT(story_if_asked(at(0, 0), at(-200, 0, 0), 400), ElementsAre("swipe_left"));
+}
+
+TEST(Swipe, AHandThatLiesFlatIsCarried) {
+    // What a camera sees of it faces up by 45 degrees, as of a hand that reaches over a table.
+    const auto story_of_side = [](const Vec3f& side, const Vec3f& way, double ms) {
+        Actor actor = stroke(way, ms);
+        actor.change = [side](double, Hand& hand) { hand.palm_normal = side.normalized(); };
+        return story_of(actor);
+    };
+    EXPECT_THAT(story_of_side(at(0, 1, -1), at(-180, 0, 0), 450), IsEmpty());
+    EXPECT_THAT(story_of_side(at(0, 0, -1), at(-180, 0, 0), 450), ElementsAre("swipe_left"));
+    EXPECT_THAT(story_of_side(at(1, 0, -1), at(-180, 0, 0), 450), ElementsAre("swipe_left"));
+    EXPECT_THAT(story_of_side(at(0, 1, -1), at(-250, 0, 0), 350), ElementsAre("swipe_left"));
+}
+
+TEST(Swipe, ReachingForSomethingAtTheSideIsNone) {
+    // 38 degrees out of the plane; recordings have swipes of up to 28.
+    EXPECT_THAT(story_of(stroke(at(-250, 0, -195), 400)), IsEmpty());
+    EXPECT_THAT(story_of(stroke(at(-250, 0, 195), 400)), IsEmpty());
+    EXPECT_THAT(story_of(stroke(at(-250, 0, -150), 400)), ElementsAre("swipe_left"));
+}
+
 TEST(Swipe, IsOffWhenSwitchedOff) {
     GestureSettings settings;
     settings.swipe = false;
