@@ -44,7 +44,7 @@ struct MethodInfo {
     int images = 0;  ///< camera images that one depth image is made of
     /// How far a hand may move from one pattern to the next before more than 5 % of its pixels are
     /// off by over 20 mm or 15 % are missing; measured on the simulated rig, sideways
-    /// (docs/measurements.md), of one image as of the colour pair. 0: the hand must rest.
+    /// (docs/measurements/depth.md), of one image as of the colour pair. 0: the hand must rest.
     double motion_mm = 0.0;
 };
 

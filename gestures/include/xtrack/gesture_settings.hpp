@@ -186,7 +186,7 @@ struct GestureSettings {
     /// A pull goes at least so far, because hands draw back to rest after whatever they
     /// did. 40..600. Measured: hands that draw back 100..130, a pull 300; those of the simulated
     /// people have 120..200, so that it is set where few of the first and most of these count.
-    double pull_length_mm = 120.0;
+    double pull_length_mm = 110.0;
 
     // --- pinch -----------------------------------------------------------------------------------
     /// Thumb tip to index tip, or the share of the hand's length if that is more. 5..40; 0..0.3.
@@ -256,7 +256,7 @@ struct GestureSettings {
     /// It straightens again by this, and by this share of the bend, at most so long after it was
     /// straight. 5..90; 0.1..1; 100..3000. Measured: 450..1300 ms.
     double tap_open_deg = 15.0;
-    double tap_open_share = 0.5;
+    double tap_open_share = 0.3;
     double tap_within_ms = 1500.0;
     /// The hand points, before and after: mean extension of the three others at most; above it the
     /// hand is open, of which more is asked (docs/gestures/tap.md). 0..1. Measured: taps 0.1..0.45.

@@ -24,8 +24,10 @@ constexpr float kConfidence = 0.9F;
 constexpr float kDegrees = 57.29578F;
 // How far back the straight finger is looked for. At tap_speed_degps a bend takes half of it.
 constexpr Duration kLookBack = std::chrono::milliseconds{300};
-// Tips of a camera's hand: the median over it, of so many at least.
-constexpr Duration kMedianOver = std::chrono::milliseconds{140};
+// Tips of a camera's hand: the median over it, of so many at least, of slow cameras over the longer
+// time. Half of it is what a tap comes late by.
+constexpr Duration kMedianOver = std::chrono::milliseconds{80};
+constexpr Duration kMedianOverMost = std::chrono::milliseconds{140};
 constexpr std::size_t kMedianOf = 3;
 constexpr std::size_t kMostTips = 9;
 constexpr float kShortestMm = 20.0F;  // palm to tip; a nearer one is no finger
@@ -59,9 +61,10 @@ double bend_deg(const MotionHistory& history, std::size_t back) {
     }
     std::array<double, kMostTips> known{};
     std::size_t n = 0;
-    for (std::size_t i = back;
-         i < history.size() && n < kMostTips && sample.stamp - history.at(i).stamp <= kMedianOver;
-         ++i) {
+    for (std::size_t i = back; i < history.size() && n < kMostTips; ++i) {
+        if (sample.stamp - history.at(i).stamp > (n < kMedianOf ? kMedianOverMost : kMedianOver)) {
+            break;
+        }
         const double deg = lean_deg(history.at(i));
         if (deg > kUnknown) {
             known[n++] = deg;

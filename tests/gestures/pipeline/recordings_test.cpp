@@ -106,7 +106,7 @@ TEST(Recordings, UnknownPresetsOfTheSimulatorNameTheKnownOnes) {
     EXPECT_NE(got.error.find("ideal-60"), std::string::npos);
 }
 
-// The preset's own person, whom the demo shows; docs/measurements.md counts the others.
+// The preset's own person, whom the demo shows; docs/measurements/gestures.md counts the others.
 TEST(Recordings, ASimulatedPersonIsUnderstood) {
     auto settings = SimSettings::preset("ideal-60");
     ASSERT_TRUE(settings);

@@ -112,7 +112,8 @@ struct SyntheticHand {
     Vec3f palm_mm{0.0F, 0.0F, 600.0F};  ///< skin at the palm's centre
     bool thumb_to_the_right = true;     ///< in the image: a right hand's palm
     std::array<bool, kFingerCount> extended{true, true, true, true, true};
-    bool pinching = false;  ///< thumb and index touch and close a ring
+    bool pinching = false;                 ///< thumb and index touch and close a ring
+    Vec3f elbow_mm{0.0F, 260.0F, 130.0F};  ///< from the palm's centre
 
     static constexpr float kPalmRadiusMm = 42.0F;
     static constexpr float kFingerRadiusMm = 8.5F;
@@ -148,8 +149,7 @@ struct SyntheticHand {
             scene.capsule(side(kRoots[0]) + centre, joint, kFingerRadiusMm, kFingerRadiusMm);
             scene.capsule(joint, meet, kFingerRadiusMm, kFingerRadiusMm);
         }
-        scene.capsule(centre + Vec3f(0.0F, 40.0F, 10.0F), centre + Vec3f(0.0F, 260.0F, 130.0F),
-                      26.0F, 34.0F);
+        scene.capsule(centre + Vec3f(0.0F, 40.0F, 10.0F), centre + elbow_mm, 26.0F, 34.0F);
     }
 
  private:
