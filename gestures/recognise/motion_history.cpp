@@ -25,6 +25,7 @@ constexpr float kApertureNoiseMm = 12.0F;
 // What is averaged to lower its noise: one sample at 20 fps, five at 120 fps, so that nothing is
 // late where frames are few.
 constexpr Duration kRecent = std::chrono::milliseconds{40};
+constexpr Duration kUnseenMost = std::chrono::milliseconds{50};
 // Five images at 60 Hz, or a depth camera at 15 Hz.
 constexpr Duration kUsualSpan = std::chrono::nanoseconds{1'000'000'000 / 15};
 
@@ -233,6 +234,11 @@ double MotionHistory::smear_mm(Duration window, std::size_t back) const noexcept
     }
     const Duration span = sample.span > Duration::zero() ? sample.span : kUsualSpan;
     return static_cast<double>(velocity(std::max(span, window), back).norm()) * to_seconds(span);
+}
+
+Duration MotionHistory::unseen() const noexcept {
+    return count_ > 1 ? std::min((newest().stamp - at(1).stamp) / 2, kUnseenMost)
+                      : Duration::zero();
 }
 
 std::size_t MotionHistory::count_within(Duration age) const noexcept {

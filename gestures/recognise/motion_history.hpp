@@ -91,6 +91,10 @@ class MotionHistory {
     /// @param window of the velocity, at least
     [[nodiscard]] double smear_mm(Duration window, std::size_t back = 0) const noexcept;
 
+    /// Half of the time between the two newest samples, 50 ms at most: what was first seen in a
+    /// sample began so long before it, on average. 0 with a single sample.
+    [[nodiscard]] Duration unseen() const noexcept;
+
     /// How many samples are not older than `age` (counted from the newest).
     [[nodiscard]] std::size_t count_within(Duration age) const noexcept;
 

@@ -186,7 +186,7 @@ struct GestureSettings {
     /// A pull goes at least so far, because hands draw back to rest after whatever they
     /// did. 40..600. Measured: hands that draw back 100..130, a pull 300; those of the simulated
     /// people have 120..200, so that it is set where few of the first and most of these count.
-    double pull_length_mm = 110.0;
+    double pull_length_mm = 115.0;
 
     // --- pinch -----------------------------------------------------------------------------------
     /// Thumb tip to index tip, or the share of the hand's length if that is more. 5..40; 0..0.3.
@@ -198,8 +198,9 @@ struct GestureSettings {
     /// Standard deviation of the aperture: what pinch_release_mm is checked against, nothing else.
     /// 0..20. Measured: 2 to 3 mm.
     double pinch_noise_mm = 3.0;
-    /// Closed for so long. 0..1000. LeapC has 50; hands in motion touch by chance for 50 to 100.
-    double pinch_hold_ms = 80.0;
+    /// Closed for so long, half of the time before the first closed image counted, so that it means
+    /// the same at any rate. 0..1000. LeapC has 50; hands in motion touch by chance for 50 to 110.
+    double pinch_hold_ms = 110.0;
     /// The approach: seen open by so much, at most so long before it closes. 20..120; 50..3000.
     double pinch_open_mm = 40.0;
     double pinch_approach_ms = 600.0;
@@ -231,7 +232,7 @@ struct GestureSettings {
     /// 0.1 apart. TouchFree has 0.8 and 0.7.
     double grab_strength = 0.80;
     double grab_release = 0.65;
-    /// Closed for so long. 0..1000. As pinches.
+    /// Closed for so long, counted likewise. 0..1000.
     double grab_hold_ms = 100.0;
     /// The approach: seen so open, at most so long before it closes. 0..0.6; 50..3000. Measured:
     /// grabs take 100..570; hands that half close at rest have 0.4..0.7.

@@ -252,7 +252,7 @@ GrabMachine::Event GrabMachine::judge(const Context& c, double strength, Refusal
         if (strength <= s.grab_release) {
             return Event::released;
         }
-        const double held_ms = to_ms(c.sensor - closed_at_);
+        const double held_ms = to_ms(c.sensor - closed_at_ + c.history.unseen());
         if (closed() || held_ms < s.grab_hold_ms || strength < s.grab_strength) {
             return Event::closed;
         }

@@ -321,7 +321,7 @@ PinchMachine::Event PinchMachine::judge(const Context& c, double aperture_mm,
         if (closed()) {
             return Event::closed;
         }
-        const double held_ms = to_ms(c.sensor - closed_at_);
+        const double held_ms = to_ms(c.sensor - closed_at_ + c.history.unseen());
         // A graze that opens again is inside the hysteresis, but on its way out.
         const double inner_mm = 0.5 * (s.pinch_close_mm + release_mm(c));
         if (held_ms < s.pinch_hold_ms || aperture_mm > inner_mm) {

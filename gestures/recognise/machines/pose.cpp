@@ -31,6 +31,11 @@ constexpr float kThumbIn = 0.15F;
 constexpr float kThumbInNoMore = 0.30F;
 constexpr float kThumbOutFrom = 0.15F;
 constexpr float kThumbOut = 0.30F;
+// A camera's extensions of folded fingers and of a thumb upon them: those of folded ones are
+// 0..0.4, as knuckles stand out of a fist; a finger counts as extended from 0.35 on, which is 0.8
+// here.
+constexpr float kFoldedExtension = 0.2F;
+constexpr float kUnfoldedExtension = 1.0F;
 // Cosine from the vertical of a thumb: 60 degrees is none, 40 is 0.8 of it.
 constexpr float kThumbSlants = 0.5F;
 constexpr float kThumbUpright = 0.85F;
@@ -44,12 +49,18 @@ float straight(const MotionSample& hand, Finger finger) {
                             : hand.extension[f];
 }
 
+/// Of a camera's finger.
+float folded_of(float extension) {
+    return extension < 0.0F ? -1.0F : ramp(extension, kUnfoldedExtension, kFoldedExtension);
+}
+
 float folded(const MotionSample& hand, Finger finger) {
     const auto f = static_cast<std::size_t>(finger);
+    if (!hand.from_joints) {
+        return folded_of(hand.extension[f]);
+    }
     const float deg = hand.flexion[f].whole_deg;
-    return hand.from_joints ? deg > kFlexionUnknown ? ramp(deg, kUnfoldedDeg, kFoldedDeg) : -1.0F
-           : hand.extension[f] >= 0.0F ? 1.0F - hand.extension[f]
-                                       : -1.0F;
+    return deg > kFlexionUnknown ? ramp(deg, kUnfoldedDeg, kFoldedDeg) : -1.0F;
 }
 
 float thumb_out(const MotionSample& hand) {
@@ -63,8 +74,7 @@ float thumb_out(const MotionSample& hand) {
 
 float thumb_in(const MotionSample& hand) {
     if (!hand.from_joints) {
-        const float out = thumb_out(hand);
-        return out >= 0.0F ? 1.0F - out : -1.0F;
+        return folded_of(thumb_out(hand));
     }
     return hand.thumb_to_fingers_mm < 0.0F || hand.hand_length_mm <= 0.0F
                ? -1.0F

@@ -37,11 +37,28 @@ TEST(Pinch, BeginsUpdatesAndEnds) {
     EXPECT_EQ(begin->gesture_id, end->gesture_id);
     EXPECT_FLOAT_EQ(update->value, 1.0F);
     EXPECT_LT(begin->onset, begin->sensor);
-    // Closed at about 930 ms, held for 80.
+    // Closed at about 930 ms, held for 110, of which half an image is not seen.
     EXPECT_NEAR(static_cast<double>(begin->sensor.us()), 1.01e6, 0.06e6);
     // Between the fingertips: 40 mm left of the palm, 46 mm above.
     EXPECT_NEAR(begin->position_mm.x(), -40.0F, 0.1F);
     EXPECT_NEAR(begin->position_mm.y(), 46.0F, 2.0F);
+}
+
+TEST(Pinch, IsAsLongAtAnyRate) {
+    // Under 20 mm for about 80 ms, which no moment of looking makes 110; then for 300.
+    for (const double fps : {15.0, 20.0, 30.0, 60.0, 120.0}) {
+        for (double shift_ms = 0.0; shift_ms < 70.0; shift_ms += 10.0) {
+            const auto touch = [&](double closed_ms) {
+                const double from = 900 + shift_ms;
+                return Actor{{fingers(0, 75), fingers(from - 100, 75), fingers(from, 14),
+                              fingers(from + closed_ms, 14), fingers(from + 100 + closed_ms, 75),
+                              fingers(2000, 75)}};
+            };
+            EXPECT_THAT(story_of(touch(40), fps), IsEmpty()) << fps << " " << shift_ms;
+            EXPECT_THAT(story_of(touch(260), fps), ElementsAre("pinch begin", "pinch end"))
+                << fps << " " << shift_ms;
+        }
+    }
 }
 
 struct Depth {

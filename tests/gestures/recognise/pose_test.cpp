@@ -159,8 +159,18 @@ TEST(Pose, OfACamerasHandByItsExtensions) {
     };
     EXPECT_EQ(score(GestureType::open_palm), 1.0);
     hand.finger_extension = {0.0F, 1.0F, 1.0F, 0.1F, 0.0F};
-    EXPECT_NEAR(score(GestureType::victory), 0.9, 1e-6);
+    EXPECT_EQ(score(GestureType::victory), 1.0);
     EXPECT_LE(score(GestureType::open_palm), 0.1);
+    // A folded finger's knuckle may stand out, as a finger counts as extended from 0.35 on.
+    hand.finger_extension = {0.0F, 1.0F, 1.0F, 0.35F, 0.0F};
+    EXPECT_NEAR(score(GestureType::victory), 0.81, 0.005);
+    hand.finger_extension = {0.0F, 1.0F, 1.0F, 0.45F, 0.0F};
+    EXPECT_LT(score(GestureType::victory), 0.7);
+    hand.finger_extension = {0.45F, 1.0F, 1.0F, 0.0F, 0.0F};
+    EXPECT_LT(score(GestureType::victory), 0.7);
+    hand.finger_extension = {0.35F, 0.35F, 0.35F, 0.35F, 0.35F};
+    EXPECT_NEAR(score(GestureType::fist), 0.81, 0.005);
+    EXPECT_LT(score(GestureType::thumb_up), 0.5);
     hand.finger_extension = {-1.0F, -1.0F, -1.0F, -1.0F, -1.0F};
     for (const GestureType pose : kPoses) {
         EXPECT_EQ(score(pose), 0.0) << to_string(pose);

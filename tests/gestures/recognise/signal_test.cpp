@@ -35,6 +35,23 @@ Signal measured(double noise_mm, double fps, float way_mm) {
     return meter.signal();
 }
 
+TEST(MotionHistory, WhatIsFirstSeenBeganHalfAnImageBefore) {
+    MotionHistory history;
+    const auto add_at = [&](int ms) {
+        MotionSample sample;
+        sample.stamp = Stamp::from_us(1000LL * ms);
+        history.add(sample);
+    };
+    add_at(0);
+    EXPECT_EQ(history.unseen(), Duration::zero());
+    add_at(50);
+    EXPECT_EQ(history.unseen(), std::chrono::milliseconds{25});
+    add_at(60);
+    EXPECT_EQ(history.unseen(), std::chrono::milliseconds{5});
+    add_at(460);  // a gap says little
+    EXPECT_EQ(history.unseen(), std::chrono::milliseconds{50});
+}
+
 class SignalAt : public ::testing::TestWithParam<std::tuple<double, double>> {};
 
 TEST_P(SignalAt, NoiseIsMeasuredWhileTheHandMoves) {

@@ -89,7 +89,8 @@ class Play {
             scene_.noise(1.5, 0.03, static_cast<unsigned>(k_));
             scene_.depth.stamp = Stamp::from_us(k_ * 1000000LL / kFramesPerSecond);
             const HandFrame& hands = tracker_.track(scene_.depth);
-            for (const GestureEvent& e : recogniser_.push(to_interaction(hands, user_from_camera()))) {
+            for (const GestureEvent& e :
+                 recogniser_.push(to_interaction(hands, user_from_camera()))) {
                 gestures_ += e.type != GestureType::hand && e.phase == EventPhase::begin ? 1 : 0;
             }
             count.add(hands, hand.palm_mm);
