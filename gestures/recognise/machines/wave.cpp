@@ -12,6 +12,7 @@
 #include "gestures/recognise/machines/wave.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace xtrack::recognise {
@@ -21,6 +22,23 @@ namespace {
 // So much of the stroke's way back shows that the hand has turned, and is more than noise.
 constexpr double kBackShare = 0.25;
 constexpr float kConfidence = 0.9F;
+constexpr double kOutliers = 0.1;  // share of the palms
+
+/// From the lowest to the highest palm along an axis, but for the outermost kOutliers at either end:
+/// now and then a wrist is taken for the palm.
+float range_mm(const MotionHistory& history, std::size_t samples, Eigen::Index axis) {
+    std::array<float, MotionHistory::kCapacity> along{};
+    for (std::size_t i = 0; i < samples; ++i) {
+        along[i] = history.at(i).palm_mm[axis];
+    }
+    const auto end = along.begin() + static_cast<std::ptrdiff_t>(samples);
+    const auto out =
+        static_cast<std::ptrdiff_t>(kOutliers * static_cast<double>(samples));
+    std::nth_element(along.begin(), along.begin() + out, end);
+    const float low = along[static_cast<std::size_t>(out)];
+    std::nth_element(along.begin(), end - 1 - out, end);
+    return *(end - 1 - out) - low;
+}
 
 }  // namespace
 
@@ -97,17 +115,8 @@ bool WaveMachine::follow(const Context& c, Refusal& refusal) {
 Refusal WaveMachine::off_axis(const Context& c) const {
     const Duration age = c.history.newest().stamp - turns_[0].stamp;
     const std::size_t samples = c.history.count_within(age);
-    Vec3f low = c.history.newest().palm_mm;
-    Vec3f high = low;
-    for (std::size_t i = 0; i < samples; ++i) {
-        low = low.cwiseMin(c.history.at(i).palm_mm);
-        high = high.cwiseMax(c.history.at(i).palm_mm);
-    }
-    for (std::size_t i = 0; i < count_; ++i) {
-        low = low.cwiseMin(turns_[i].palm_mm);
-        high = high.cwiseMax(turns_[i].palm_mm);
-    }
-    const auto strays_mm = static_cast<double>(std::max(high.y() - low.y(), high.z() - low.z()));
+    const auto strays_mm = static_cast<double>(
+        std::max(range_mm(c.history, samples, 1), range_mm(c.history, samples, 2)));
     if (strays_mm > c.settings.wave_off_axis_mm) {
         return {"off the axis", strays_mm, c.settings.wave_off_axis_mm};
     }

@@ -61,6 +61,22 @@ TEST(Wave, HoldsWithTheNoiseOfADepthCamera) {
     }
 }
 
+TEST(Wave, AWristThatIsTakenForThePalmDoesNotSpoilIt) {
+    // For one image in 16, 70 mm below; in one of three it is a hand that goes up and down.
+    const auto with_wrists = [](int period) {
+        Actor actor = waving({});
+        actor.change = [period](double ms, Hand& hand) {
+            const int image = static_cast<int>(std::lround(ms * 60.0 / 1000.0));
+            hand.palm_mm.y() -= image % period == 0 ? 70.0F : 0.0F;
+        };
+        return actor;
+    };
+    GestureSettings only_waves = with_wave();
+    only_waves.circle = only_waves.swipe = false;
+    EXPECT_THAT(story_of(with_wrists(16), 60, only_waves), ElementsAre("wave"));
+    EXPECT_THAT(story_of(with_wrists(3), 60, only_waves), IsEmpty());
+}
+
 TEST(Wave, IsOffUnlessAskedFor) {
     EXPECT_THAT(story_of(waving({}), 60, GestureSettings{}), Not(Contains("wave")));
 }
