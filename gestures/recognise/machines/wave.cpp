@@ -24,16 +24,15 @@ constexpr double kBackShare = 0.25;
 constexpr float kConfidence = 0.9F;
 constexpr double kOutliers = 0.1;  // share of the palms
 
-/// From the lowest to the highest palm along an axis, but for the outermost kOutliers at either end:
-/// now and then a wrist is taken for the palm.
+/// From the lowest to the highest palm along an axis, but for the outermost kOutliers at either
+/// end: now and then a wrist is taken for the palm.
 float range_mm(const MotionHistory& history, std::size_t samples, Eigen::Index axis) {
     std::array<float, MotionHistory::kCapacity> along{};
     for (std::size_t i = 0; i < samples; ++i) {
         along[i] = history.at(i).palm_mm[axis];
     }
     const auto end = along.begin() + static_cast<std::ptrdiff_t>(samples);
-    const auto out =
-        static_cast<std::ptrdiff_t>(kOutliers * static_cast<double>(samples));
+    const auto out = static_cast<std::ptrdiff_t>(kOutliers * static_cast<double>(samples));
     std::nth_element(along.begin(), along.begin() + out, end);
     const float low = along[static_cast<std::size_t>(out)];
     std::nth_element(along.begin(), end - 1 - out, end);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Joint recordings of public data sets, kept beside the project (../shared/data).
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -90,6 +92,65 @@ TEST(JointRecordings, GrabsTapsAndCirclesAreFoundBesideThem) {
     }
     EXPECT_LE(scorer.all().false_per_label().value, 0.15);
     EXPECT_EQ(scorer.all().wrong_hand, 0);
+}
+
+/// Seen in a mirror: the other hand, on the other side.
+HandFrame mirrored(HandFrame frame) {
+    for (Hand& hand : std::span(frame.hands).first(frame.count)) {
+        hand.palm_mm.x() = -hand.palm_mm.x();
+        for (TrackedPoint& joint : hand.joints) {
+            joint.position_mm.x() = -joint.position_mm.x();
+        }
+        hand.chirality = hand.chirality == Chirality::left    ? Chirality::right
+                         : hand.chirality == Chirality::right ? Chirality::left
+                                                              : Chirality::unknown;
+    }
+    return frame;
+}
+
+Direction mirrored(Direction d) {
+    switch (d) {
+        case Direction::left: return Direction::right;
+        case Direction::right: return Direction::left;
+        case Direction::clockwise: return Direction::counterclockwise;
+        case Direction::counterclockwise: return Direction::clockwise;
+        case Direction::none:
+        case Direction::up:
+        case Direction::down: break;
+    }
+    return d;
+}
+
+TEST(JointRecordings, LeftHandsAreLikeRightOnes) {
+    int compared = 0;
+    for (const auto& entry :
+         fs::is_directory(kJoints) ? fs::directory_iterator(kJoints) : fs::directory_iterator()) {
+        const auto frames = read_joint_recording(entry.path() / "joints.csv");
+        ASSERT_TRUE(frames.ok()) << frames.error().message;
+        auto recogniser = GestureRecogniser::create({});
+        auto in_mirror = GestureRecogniser::create({});
+        HandFromJoints reader;
+        HandFromJoints reader_in_mirror;
+        for (HandFrame frame : *frames) {
+            HandFrame other = mirrored(frame);
+            reader.complete(frame);
+            reader_in_mirror.complete(other);
+            const auto events = recogniser->push(frame);
+            const auto others = in_mirror->push(other);
+            ASSERT_EQ(events.size(), others.size()) << entry.path() << " " << frame.stamp.us();
+            for (std::size_t i = 0; i < events.size(); ++i) {
+                EXPECT_EQ(events[i].type, others[i].type) << entry.path();
+                EXPECT_EQ(events[i].phase, others[i].phase);
+                EXPECT_EQ(mirrored(events[i].direction), others[i].direction);
+                EXPECT_NEAR(events[i].value, others[i].value, 1e-2F * std::abs(events[i].value));
+                compared += events[i].type != GestureType::hand ? 1 : 0;
+            }
+        }
+    }
+    if (compared == 0) {
+        GTEST_SKIP() << "no recordings at " << kJoints;
+    }
+    EXPECT_GT(compared, 100);
 }
 
 TEST(JointRecordings, VictoriesAreTwosAndThumbsUpAreOnes) {
