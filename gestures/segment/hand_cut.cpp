@@ -20,6 +20,16 @@ constexpr float kRidge = 0.95F;
 constexpr float kCutShare = 0.95F;
 /// And this near to the largest, in its radii.
 constexpr float kRidgeRadii = 0.6F;
+/// A finger that is hidden at its root is a surface of its own, behind the fingers that are folded
+/// before it: so much nearer or farther than the palm, before any body, so long and wide, mm.
+constexpr float kFingerBeforeMm = 60.0F;
+constexpr float kFingerBehindMm = 40.0F;
+constexpr float kFingerBeforeBodyMm = 30.0F;
+constexpr float kFingerLengthMm = 30.0F;
+constexpr float kFingerWidthMinMm = 7.0F;
+constexpr float kFingerWidthMaxMm = 24.0F;
+/// Radius where two of them part.
+constexpr float kTwoFingersMm = 21.0F;
 /// The hand is the component that most pixels this near to the palm's centre belong to, grid px.
 constexpr int kSeedReach = 3;
 
@@ -32,6 +42,7 @@ void HandCut::create(const Rig& rig, Size size, const Grid& coarse, float near_m
     grid_.create(rig, size, scale, scale);
     components_.create(grid_);
     own_.assign(coarse.size(), kNowhere);
+    finger_.reserve(coarse.size());
     rows_.assign(coarse.size(), kNowhere);
     depths_.assign(coarse.size(), kNowhere);
     inside_.assign(grid_.size(), 0);
@@ -114,6 +125,115 @@ void HandCut::set_ends(const PalmCandidate& palm, std::span<const PalmPrior> exp
     }
 }
 
+bool HandCut::may_be_finger(const CoarseScene& coarse, const PalmCandidate& palm, int i) const {
+    const auto k = static_cast<std::size_t>(i);
+    const float z = coarse.grid.z[k];
+    if (z <= 0.0F || own_[k].high_mm != 0.0F) {
+        return false;
+    }
+    // Two fingers are enough surface to be a part; what is thicker has been looked at as a hand, a
+    // body or an arm.
+    if (coarse.parts.part_of(i) == palm.part || is_another(coarse, palm, i)) {
+        return false;
+    }
+    const float known = coarse.background_mm.empty() ? 0.0F : coarse.background_mm[k];
+    if (known > 0.0F && z > known - coarse.margin_mm) {
+        return false;
+    }
+    for (const Body& body : coarse.parts.bodies()) {
+        if (z > body.front_mm - kFingerBeforeBodyMm) {
+            return false;  // a patch of it, between hand and arm
+        }
+    }
+    const Vec3f d = coarse.grid.point(i) - palm.centre_mm;
+    return d.z() > -kFingerBeforeMm && d.z() < kFingerBehindMm && beyond_ends(d) <= 0.0F &&
+           d.norm() <= reach_limit_mm(palm.radius_mm);
+}
+
+/// A surface that is neither the hand's nor thin enough for a finger.
+bool HandCut::is_another(const CoarseScene& coarse, const PalmCandidate& palm, int i) {
+    const int part = coarse.parts.part_of(i);
+    return part == Parts::kOther ||
+           (part >= 0 && part != palm.part &&
+            coarse.parts.parts()[static_cast<std::size_t>(part)].thickest_mm > kTwoFingersMm);
+}
+
+/// Adds the surface that a pixel belongs to, if it is a finger.
+/// @return the box of what was added; empty: it is none
+Box HandCut::grow_finger(const CoarseScene& coarse, const PalmCandidate& palm, int from) {
+    const Grid& grid = coarse.grid;
+    const std::size_t first = finger_.size();
+    const auto take = [&](int i) {
+        const float z = grid.z[static_cast<std::size_t>(i)];
+        own_[static_cast<std::size_t>(i)] = {z, z, false};
+        finger_.push_back(i);
+    };
+    take(from);
+    Box box{grid.inner_width, grid.inner_height, 0, 0};
+    float area_mm2 = 0.0F;
+    float length_mm = 0.0F;
+    bool at_another = false;  // it hangs on a body, or on what lies on it
+    for (std::size_t n = first; n < finger_.size(); ++n) {
+        const int i = finger_[n];
+        const float z = grid.z[static_cast<std::size_t>(i)];
+        const int x = grid.x_of(i);
+        const int y = grid.y_of(i);
+        box = {std::min(box.x_begin, x), std::min(box.y_begin, y), std::max(box.x_end, x + 1),
+               std::max(box.y_end, y + 1)};
+        area_mm2 += grid.area_mm2(i, i + 1);
+        length_mm = std::max(length_mm, (grid.point(i) - grid.point(from)).head<2>().norm());
+        for (const int o : {-grid.width, -1, 1, grid.width}) {
+            const float step = std::abs(grid.z[static_cast<std::size_t>(i + o)] - z);
+            if (may_be_finger(coarse, palm, i + o)) {
+                if (step < grid.step_limit_mm(z)) {
+                    take(i + o);
+                }
+            } else if (step < kFingerBehindMm && is_another(coarse, palm, i + o)) {
+                at_another = true;
+            }
+        }
+    }
+    const float width_mm = area_mm2 / std::max(length_mm, 1.0F);
+    const int part = coarse.parts.part_of(from);
+    if (!at_another && length_mm >= kFingerLengthMm && width_mm >= kFingerWidthMinMm &&
+        (part >= 0 || width_mm <= kFingerWidthMaxMm)) {
+        if (part >= 0) {
+            adopted_[static_cast<std::size_t>(part)] = true;
+        }
+        return box;
+    }
+    for (std::size_t n = first; n < finger_.size(); ++n) {
+        own_[static_cast<std::size_t>(finger_[n])] = kNoFinger;
+    }
+    return {};
+}
+
+/// Fingers whose root is hidden by the fingers before them: they touch the hand in the image only.
+/// @param pixels of the hand's part
+/// @return the box with them
+Box HandCut::adopt_fingers(const CoarseScene& coarse, const PalmCandidate& palm,
+                           std::span<const int> pixels, Box box) {
+    finger_.clear();
+    adopted_.fill(false);
+    const int w = coarse.grid.width;
+    for (const int i : pixels) {
+        if (own_[static_cast<std::size_t>(i)].high_mm <= 0.0F) {
+            continue;
+        }
+        for (const int o : {-w, -1, 1, w}) {
+            if (!may_be_finger(coarse, palm, i + o)) {
+                continue;
+            }
+            const Box finger = grow_finger(coarse, palm, i + o);
+            if (!finger.empty()) {
+                box = {std::min(box.x_begin, finger.x_begin), std::min(box.y_begin, finger.y_begin),
+                       std::max(box.x_end, finger.x_end), std::max(box.y_end, finger.y_end)};
+            }
+        }
+    }
+    return box;
+}
+
 /// Where the hand is on the coarse grid, and how deep round each of its pixels.
 /// @return the box of coarse pixels that may hold some of it
 Box HandCut::mark_coarse(const CoarseScene& coarse, const PalmCandidate& palm) {
@@ -147,8 +267,10 @@ Box HandCut::mark_coarse(const CoarseScene& coarse, const PalmCandidate& palm) {
         return {};
     }
     // One pixel more: a fingertip may have too little of a coarse pixel to show there.
-    const Box cells =
-        grid.grown({left - kPad, grid.y_of(first), right - kPad + 1, grid.y_of(last) + 1}, 1);
+    const Box cells = grid.grown(
+        adopt_fingers(coarse, palm, coarse.parts.pixels(part),
+                      {left - kPad, grid.y_of(first), right - kPad + 1, grid.y_of(last) + 1}),
+        1);
     const auto both = [](const Depths& a, const Depths& b) -> Depths {
         return {std::min(a.low_mm, b.low_mm), std::max(a.high_mm, b.high_mm), a.whole};
     };
@@ -163,6 +285,9 @@ Box HandCut::mark_coarse(const CoarseScene& coarse, const PalmCandidate& palm) {
     for (int y = cells.y_begin; y < cells.y_end; ++y) {
         std::fill_n(own_.begin() + grid.index(cells.x_begin, y), cells.width(), kNowhere);
     }
+    for (const int i : finger_) {  // what was no finger may lie anywhere
+        own_[static_cast<std::size_t>(i)] = kNowhere;
+    }
     for (int y = cells.y_begin; y < cells.y_end; ++y) {
         const int begin = grid.index(cells.x_begin, y);
         for (int i = begin; i < begin + cells.width(); ++i) {
@@ -175,7 +300,8 @@ Box HandCut::mark_coarse(const CoarseScene& coarse, const PalmCandidate& palm) {
                 d = both(d, rows_[k + static_cast<std::size_t>(grid.width)]);
             }
             const int owner = coarse.parts.part_of(i);
-            const bool others = owner != palm.part && owner != Parts::kNone;
+            const bool others = owner != palm.part && owner != Parts::kNone &&
+                                (owner < 0 || !adopted_[static_cast<std::size_t>(owner)]);
             const float limit = grid.step_limit_mm(d.low_mm);
             // What is as far as the background is background, though a hand's pixel has some of it.
             const float known = coarse.background_mm.empty() ? 0.0F : coarse.background_mm[k];

@@ -75,6 +75,13 @@ class HandCut {
         return most;
     }
     Box mark_coarse(const CoarseScene& coarse, const PalmCandidate& palm);
+    Box adopt_fingers(const CoarseScene& coarse, const PalmCandidate& palm,
+                      std::span<const int> pixels, Box box);
+    Box grow_finger(const CoarseScene& coarse, const PalmCandidate& palm, int from);
+    [[nodiscard]] static bool is_another(const CoarseScene& coarse, const PalmCandidate& palm,
+                                         int i);
+    [[nodiscard]] bool may_be_finger(const CoarseScene& coarse, const PalmCandidate& palm,
+                                     int i) const;
     void find_pixels(const CoarseScene& coarse, const PalmCandidate& palm, const Box& cells,
                      const Box& box);
     [[nodiscard]] int component_at(const CoarseScene& coarse, const PalmCandidate& palm,
@@ -90,9 +97,12 @@ class HandCut {
     Grid grid_;
     Components components_;
     static constexpr Depths kNowhere{1e9F, 0.0F, false};
-    std::array<End, kMaxHands + 1> ends_{};  ///< the wrist, and towards other hands
+    static constexpr Depths kNoFinger{1e9F, -1.0F, false};  ///< nowhere, and looked at
+    std::array<End, kMaxHands + 1> ends_{};                 ///< the wrist, and towards other hands
     std::size_t end_count_ = 0;
-    std::vector<Depths> own_;     ///< of the hand in a coarse pixel; kNowhere between calls
+    std::vector<Depths> own_;  ///< of the hand in a coarse pixel; kNowhere between calls
+    std::array<bool, Parts::kPartsMax> adopted_{};  ///< parts that are fingers of the hand
+    std::vector<int> finger_;     ///< coarse pixels that were looked at for fingers behind the hand
     std::vector<Depths> rows_;    ///< in it and its neighbours along the row
     std::vector<Depths> depths_;  ///< in it and all its neighbours, with what noise may add
     std::vector<float> low_mm_, high_mm_;  ///< of one row, by pixel of the fine grid

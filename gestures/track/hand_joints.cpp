@@ -17,6 +17,7 @@ constexpr float kMeasuredHandMm = 187.0F;
 constexpr float kPalmHalfMm = 13.0F;
 constexpr float kFingerHalfMm = 7.5F;
 constexpr float kStraight = 0.75F;  // extension
+constexpr float kLeastUp = 0.3F;    // sine of the angle between the fingers and the palm's normal
 
 /// Lengths of bones, mm; the pulp is what the tip's joint lies before the bone's end.
 struct Bones {
@@ -108,16 +109,20 @@ void infer_joints(const HandRegion& region, int thumb_side, Hand& hand) {
     if (!pointing) {
         up = region.palm_mm - region.wrist_mm;
     }
+    up.normalize();
     up -= up.dot(axes.in) * axes.in;
-    // Where the forearm was cut off lies on its skin, and where it is thinnest.
-    const Vec3f wrist_mm = pointing && up.norm() > 0.0F
-                               ? Vec3f(axes.middle_mm - axes.scale * kWristMm * up.normalized())
-                               : Vec3f(region.wrist_mm + axes.scale * kPalmHalfMm * axes.in);
-    hand.joint(Joint::wrist) = {wrist_mm, true};
-    if (thumb_side == 0 || up.norm() < 1.0F) {
-        return;
+    if (up.norm() < kLeastUp) {
+        return;  // it points at the camera
     }
     axes.up = up.normalized();
+    // Where the forearm was cut off lies on its skin, and where it is thinnest: it tells the way to
+    // the wrist only.
+    const Vec3f wrist_mm = axes.middle_mm - axes.scale * kWristMm * axes.up;
+    hand.joint(Joint::wrist) = {wrist_mm, true};
+    // Of a hand without a straight finger it is not seen which way it is turned.
+    if (thumb_side == 0 || !pointing) {
+        return;
+    }
     // Clockwise of the fingers as the camera sees them: its y goes down, its z away from it.
     axes.aside = static_cast<float>(thumb_side) * axes.up.cross(hand.palm_normal);
     for (std::size_t f = 0; f < kFingerCount; ++f) {
