@@ -94,6 +94,12 @@ TEST(JointRecordings, GrabsTapsAndCirclesAreFoundBesideThem) {
     EXPECT_EQ(scorer.all().wrong_hand, 0);
 }
 
+Chirality mirrored(Chirality c) {
+    return c == Chirality::left    ? Chirality::right
+           : c == Chirality::right ? Chirality::left
+                                   : Chirality::unknown;
+}
+
 /// Seen in a mirror: the other hand, on the other side.
 HandFrame mirrored(HandFrame frame) {
     for (Hand& hand : std::span(frame.hands).first(frame.count)) {
@@ -101,9 +107,7 @@ HandFrame mirrored(HandFrame frame) {
         for (TrackedPoint& joint : hand.joints) {
             joint.position_mm.x() = -joint.position_mm.x();
         }
-        hand.chirality = hand.chirality == Chirality::left    ? Chirality::right
-                         : hand.chirality == Chirality::right ? Chirality::left
-                                                              : Chirality::unknown;
+        hand.chirality = mirrored(hand.chirality);
     }
     return frame;
 }
@@ -142,6 +146,9 @@ TEST(JointRecordings, LeftHandsAreLikeRightOnes) {
                 EXPECT_EQ(events[i].type, others[i].type) << entry.path();
                 EXPECT_EQ(events[i].phase, others[i].phase);
                 EXPECT_EQ(mirrored(events[i].direction), others[i].direction);
+                EXPECT_EQ(mirrored(events[i].hand), others[i].hand);
+                EXPECT_NEAR(events[i].position_mm.x(), -others[i].position_mm.x(), 0.1F);
+                EXPECT_NEAR(events[i].position_mm.y(), others[i].position_mm.y(), 0.1F);
                 EXPECT_NEAR(events[i].value, others[i].value, 1e-2F * std::abs(events[i].value));
                 compared += events[i].type != GestureType::hand ? 1 : 0;
             }
