@@ -14,9 +14,11 @@ struct ImageRig {
     const char* preset;
     const char* method;  ///< empty: the preset's own three grey patterns
 };
-inline constexpr std::array<ImageRig, 3> kImageRigs{{{"ideal-60 grey", "ideal-60", ""},
-                                                     {"webcam-30 rgb", "webcam-30", "rgb"},
-                                                     {"webcam-30 grey", "webcam-30", ""}}};
+inline constexpr std::array<ImageRig, 4> kImageRigs{
+    {{"ideal-60 grey", "ideal-60", ""},
+     {"webcam-30 rgb", "webcam-30", "rgb"},
+     {"webcam-30 grey", "webcam-30", ""},
+     {"webcam-30 one colour", "webcam-30", "rgb-static"}}};
 
 /// The person as a rig can see them: within its working distance.
 [[nodiscard]] Person before_a_rig(Person person);
